@@ -1,0 +1,12 @@
+//! A replication of Mimura et al. (2017): from a simulated body to its schema, stage by stage.
+
+pub mod agent;
+pub mod body_map;
+pub mod distance;
+pub mod evaluate;
+pub mod quantise;
+pub mod schema;
+pub mod sense;
+pub mod settings;
+pub mod simulate;
+pub mod streams;

@@ -1,0 +1,36 @@
+//! Two Gaussian components → a latent joint between them, and the weight of that edge (equations 12, 13,
+//! 18 and 21).
+//!
+//! A joint q is a point that both components generate, so it is drawn from the product of their
+//! densities, and it is data of both when they are updated.
+
+use nalgebra::{DMatrix, DVector};
+use rand::Rng;
+
+use super::gaussian::{Gaussian, standard_normal};
+
+/// Draws q from the normalised product N(q; μ_s, Σ_s) N(q; μ_c, Σ_c) (equation 18), a Gaussian with
+/// precision Λ_s + Λ_c.
+pub fn draw_between(s: &Gaussian, c: &Gaussian, rng: &mut impl Rng) -> DVector<f64> {
+    let (precision_s, precision_c) = (s.precision(), c.precision());
+    let pull = &precision_s * &s.mean + &precision_c * &c.mean;
+    let factor = (precision_s + precision_c).cholesky().expect("a sum of precisions is positive definite");
+    let noise = standard_normal(pull.len(), rng);
+    let spread = factor.l_dirty().tr_solve_lower_triangular(&noise).expect("its diagonal is positive");
+    factor.solve(&pull) + spread
+}
+
+/// −log (N(q; μ_s, Σ_s) N(q; μ_c, Σ_c)), the quadratic cost of equation 21.
+pub fn cost(q: &DVector<f64>, s: &Gaussian, c: &Gaussian) -> f64 {
+    -s.log_density(q) - c.log_density(q)
+}
+
+/// The same with the joint integrated out: −log N(μ_s; μ_c, Σ_s + Σ_c).
+pub fn collapsed_cost(s: &Gaussian, c: &Gaussian) -> f64 {
+    let covariance: DMatrix<f64> = s.covariance() + c.covariance();
+    let factor = covariance.cholesky().expect("a sum of covariances is positive definite");
+    let offset = &s.mean - &c.mean;
+    let whitened = factor.l_dirty().solve_lower_triangular(&offset).expect("its diagonal is positive");
+    let log_det = 2.0 * factor.l_dirty().diagonal().iter().map(|x| x.ln()).sum::<f64>();
+    0.5 * (whitened.norm_squared() + log_det + offset.len() as f64 * (2.0 * std::f64::consts::PI).ln())
+}

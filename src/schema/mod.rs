@@ -1,0 +1,102 @@
+//! Stage 6. Body map → samples of the body schema, by the DPGMM-LJ or the DPGMM (section 3).
+
+pub mod gaussian;
+pub mod joints;
+pub mod points;
+pub mod sweep;
+pub mod tree;
+
+use indicatif::ProgressBar;
+use rayon::prelude::*;
+
+use self::gaussian::{NormalInverseWishart, PriorError};
+use self::points::Points;
+use self::sweep::Chain;
+use self::tree::Edge;
+use crate::body_map::BodyMap;
+use crate::settings::{Keep, Schema};
+use crate::streams::stream;
+
+/// The mixture to sample from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Model {
+    /// Dirichlet-process Gaussian mixture model; its tree is found afterwards by Prim's algorithm.
+    Dpgmm,
+    /// The same with latent joints.
+    DpgmmLj,
+}
+
+impl Model {
+    /// Both, the baseline first.
+    pub const ALL: [Self; 2] = [Self::Dpgmm, Self::DpgmmLj];
+
+    /// Name on the command line and in every file.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Dpgmm => "dpgmm",
+            Self::DpgmmLj => "dpgmm-lj",
+        }
+    }
+}
+
+/// One draw of a body schema.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sample {
+    /// The chain it is from, from 0.
+    pub chain: usize,
+    /// The sweep after which it was drawn, from 1.
+    pub sweep: usize,
+    /// z: the component of each sensor, below K.
+    pub labels: Vec<usize>,
+    /// The tree over the active components.
+    pub tree: Vec<Edge>,
+    /// log p(x, z); see [`Chain::log_posterior`].
+    pub log_posterior: f64,
+}
+
+/// Runs `settings.chains` independent chains and returns the draws that are kept, by chain and sweep.
+///
+/// Chain c of a map in d dimensions has the stream (seed, simulation, "model d", c). `progress` advances
+/// by one for each chain.
+///
+/// # Errors
+/// [`PriorError`] if the map spans fewer dimensions than it has columns.
+pub fn infer(
+    map: &BodyMap,
+    model: Model,
+    settings: &Schema,
+    seed: u64,
+    simulation: usize,
+    progress: &ProgressBar,
+) -> Result<Vec<Sample>, PriorError> {
+    let points = Points::new(map);
+    let prior = NormalInverseWishart::fraley_raftery(&points, settings)?;
+    let stage = format!("{} {}", model.name(), map.dims);
+    let chains: Vec<Vec<Sample>> = (0..settings.chains)
+        .into_par_iter()
+        .map(|chain| {
+            let mut rng = stream(seed, simulation, &stage, chain);
+            let mut state = Chain::start(&points, &prior, settings, model, &mut rng);
+            let mut samples = Vec::new();
+            for sweep in 1..=settings.sweeps {
+                state.sweep(&mut rng);
+                let keep = match settings.keep {
+                    Keep::Last => sweep == settings.sweeps,
+                    Keep::All => sweep > settings.burn_in,
+                };
+                if keep {
+                    samples.push(Sample {
+                        chain,
+                        sweep,
+                        labels: state.labels.clone(),
+                        tree: state.tree(),
+                        log_posterior: state.log_posterior(),
+                    });
+                }
+            }
+            progress.inc(1);
+            samples
+        })
+        .collect();
+    Ok(chains.into_iter().flatten().collect())
+}

@@ -1,0 +1,241 @@
+//! One Gibbs sweep of the DPGMM and of the DPGMM-LJ (algorithm 1, equations 14 to 21).
+//!
+//! Order as in the paper: z, then (μ, Σ), then π, then the joints q and the tree C. (μ, Σ) of a component
+//! are drawn together, which has the same target as drawing one given the other. All but the last update
+//! are draws from full conditionals under the weak-limit approximation (Ishwaran & Zarepour 2002). The
+//! last is not: C is set to the tree of highest probability instead of being drawn, as the paper does, so
+//! that the chain is only approximately a Gibbs sampler of the DPGMM-LJ ("approximate Gibbs sampling",
+//! section 3.3). With the tree held fixed it is exact.
+
+use nalgebra::DVector;
+use rand::{Rng, RngExt};
+use rand_distr::Gamma;
+
+use super::Model;
+use super::gaussian::{Gaussian, NormalInverseWishart};
+use super::joints;
+use super::points::{Points, Statistics};
+use super::tree::{Edge, prim};
+use crate::settings::{EdgeWeight, Schema};
+
+/// A latent joint with its edge of the tree.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Joint {
+    /// The components it connects.
+    pub edge: Edge,
+    /// q, in the coordinates of the centred points.
+    pub position: DVector<f64>,
+}
+
+/// The state of one chain.
+pub struct Chain<'a> {
+    points: &'a Points,
+    prior: &'a NormalInverseWishart,
+    settings: &'a Schema,
+    model: Model,
+    /// z: the component of each point.
+    pub labels: Vec<usize>,
+    /// (μ, Σ) of each of the K components.
+    pub gaussians: Vec<Gaussian>,
+    /// log π.
+    pub log_weights: Vec<f64>,
+    /// q and C. Empty for a DPGMM.
+    pub joints: Vec<Joint>,
+    /// Statistics of each component's points.
+    statistics: Vec<Statistics>,
+    /// Room for K × n log densities.
+    densities: Vec<f64>,
+}
+
+impl<'a> Chain<'a> {
+    /// Starts from labels uniform over the K components, and draws all else given them.
+    pub fn start(
+        points: &'a Points,
+        prior: &'a NormalInverseWishart,
+        settings: &'a Schema,
+        model: Model,
+        rng: &mut impl Rng,
+    ) -> Self {
+        let components = settings.components;
+        let mut chain = Self {
+            points,
+            prior,
+            settings,
+            model,
+            labels: (0..points.count).map(|_| rng.random_range(0..components)).collect(),
+            gaussians: Vec::new(),
+            log_weights: Vec::new(),
+            joints: Vec::new(),
+            statistics: vec![Statistics::new(points.dims); components],
+            densities: vec![0.0; components * points.padded()],
+        };
+        chain.count();
+        chain.draw_given_labels(rng);
+        chain
+    }
+
+    /// One sweep.
+    pub fn sweep(&mut self, rng: &mut impl Rng) {
+        self.draw_labels(rng);
+        self.count();
+        self.draw_given_labels(rng);
+    }
+
+    fn draw_given_labels(&mut self, rng: &mut impl Rng) {
+        self.draw_gaussians(rng);
+        self.draw_weights(rng);
+        if self.model == Model::DpgmmLj {
+            self.update_tree(rng);
+        }
+    }
+
+    /// z_i ~ Categorical ∝ π_k N(x_i; μ_k, Σ_k) (equation 14).
+    fn draw_labels(&mut self, rng: &mut impl Rng) {
+        // Below this, a weight does not change the last bit of a sum that holds a 1.
+        const NEGLIGIBLE: f64 = -60.0;
+        let padded = self.points.padded();
+        for ((gaussian, log_weight), densities) in
+            self.gaussians.iter().zip(&self.log_weights).zip(self.densities.chunks_exact_mut(padded))
+        {
+            self.points.log_densities(gaussian, densities);
+            densities.iter_mut().for_each(|density| *density += log_weight);
+        }
+        let mut cumulative = vec![0.0; self.gaussians.len()];
+        for (i, label) in self.labels.iter_mut().enumerate() {
+            let logs = self.densities[i..].iter().step_by(padded);
+            let largest = logs.clone().fold(f64::NEG_INFINITY, |kept, log| kept.max(*log));
+            let mut total = 0.0;
+            for (sum, log) in cumulative.iter_mut().zip(logs) {
+                let below = log - largest;
+                if below > NEGLIGIBLE {
+                    total += below.exp();
+                }
+                *sum = total;
+            }
+            let threshold = rng.random::<f64>() * total;
+            *label = cumulative.partition_point(|sum| *sum <= threshold).min(cumulative.len() - 1);
+        }
+    }
+
+    /// Brings the statistics up to date with the labels, and drops the joints of components that are no
+    /// longer active: a joint is drawn "for each activated component" (section 3.2).
+    fn count(&mut self) {
+        self.statistics.iter_mut().for_each(Statistics::clear);
+        for (i, &label) in self.labels.iter().enumerate() {
+            self.statistics[label].add(self.points.row(i));
+        }
+        let statistics = &self.statistics;
+        self.joints.retain(|Joint { edge, .. }| {
+            is_active(&statistics[edge.child]) && is_active(&statistics[edge.parent])
+        });
+    }
+
+    /// (μ_k, Σ_k) given the component's points and joints (equations 16 and 17).
+    fn draw_gaussians(&mut self, rng: &mut impl Rng) {
+        let mut data = self.statistics.clone();
+        for Joint { edge, position } in &self.joints {
+            data[edge.child].add(position.as_slice());
+            data[edge.parent].add(position.as_slice());
+        }
+        self.gaussians = data.iter().map(|data| self.prior.posterior(data).draw(rng)).collect();
+    }
+
+    /// π ~ Dir(γ/K + n_1, …, γ/K + n_K) (equation 19), as Gamma draws without their common divisor, which
+    /// no update needs.
+    fn draw_weights(&mut self, rng: &mut impl Rng) {
+        let share = self.settings.concentration / self.settings.components as f64;
+        let draw = |data: &Statistics| {
+            let gamma = Gamma::new(share + data.count, 1.0).expect("γ > 0");
+            rng.sample::<f64, _>(gamma).ln()
+        };
+        self.log_weights = self.statistics.iter().map(draw).collect();
+    }
+
+    /// q, and the minimum spanning tree over the active components (equations 18 and 21).
+    fn update_tree(&mut self, rng: &mut impl Rng) {
+        let active = self.active();
+        let components = &self.gaussians;
+        let between = |edge: &Edge, rng: &mut _| {
+            joints::draw_between(&components[edge.child], &components[edge.parent], rng)
+        };
+        self.joints = match self.settings.edge_weight {
+            EdgeWeight::Literal => {
+                // Each component but the root has one joint, drawn given the parent it has; one that has
+                // none (newly active, or the root of the last tree) draws it from its own Gaussian.
+                let mut own: Vec<Option<DVector<f64>>> = vec![None; components.len()];
+                for &s in &active {
+                    let edge = self.joints.iter().map(|joint| joint.edge).find(|edge| edge.child == s);
+                    own[s] = Some(match edge {
+                        Some(edge) => between(&edge, rng),
+                        None => components[s].draw(rng),
+                    });
+                }
+                let joint = |s: usize| own[s].as_ref().expect("every active component has a joint");
+                prim(&active, |s, c| joints::cost(joint(s), &components[s], &components[c]))
+                    .into_iter()
+                    .map(|edge| Joint { edge, position: joint(edge.child).clone() })
+                    .collect()
+            }
+            EdgeWeight::Pairwise => {
+                let size = components.len();
+                let mut drawn: Vec<Option<(f64, DVector<f64>)>> = vec![None; size * size];
+                for (at, &s) in active.iter().enumerate() {
+                    for &c in &active[..at] {
+                        let q = between(&Edge { child: s, parent: c }, rng);
+                        drawn[c * size + s] = Some((joints::cost(&q, &components[s], &components[c]), q));
+                    }
+                }
+                let pair = |s: usize, c: usize| {
+                    drawn[s.min(c) * size + s.max(c)].as_ref().expect("drawn for every active pair")
+                };
+                prim(&active, |s, c| pair(s, c).0)
+                    .into_iter()
+                    .map(|edge| Joint { edge, position: pair(edge.child, edge.parent).1.clone() })
+                    .collect()
+            }
+            EdgeWeight::Collapsed => {
+                prim(&active, |s, c| joints::collapsed_cost(&components[s], &components[c]))
+                    .into_iter()
+                    .map(|edge| Joint { edge, position: between(&edge, rng) })
+                    .collect()
+            }
+        };
+    }
+
+    /// The active components: those of more than one point (section 3.2).
+    pub fn active(&self) -> Vec<usize> {
+        (0..self.statistics.len()).filter(|&k| is_active(&self.statistics[k])).collect()
+    }
+
+    /// The tree of this state: C of the DPGMM-LJ; for the DPGMM, the baseline's, by Prim's algorithm on
+    /// the Euclidean distances between the components' means (section 5.2).
+    pub fn tree(&self) -> Vec<Edge> {
+        match self.model {
+            Model::DpgmmLj => self.joints.iter().map(|joint| joint.edge).collect(),
+            Model::Dpgmm => {
+                prim(&self.active(), |a, b| self.gaussians[a].mean.metric_distance(&self.gaussians[b].mean))
+            }
+        }
+    }
+
+    /// log p(x, z) with π and all (μ, Σ) integrated out, up to no constant.
+    ///
+    /// It is the DPGMM's for both models: the joints are left out, since with them μ and Σ can no longer be
+    /// integrated in closed form, and so that draws of both models compare.
+    pub fn log_posterior(&self) -> f64 {
+        let concentration = self.settings.concentration;
+        let share = concentration / self.settings.components as f64;
+        let labels = libm::lgamma(concentration) - libm::lgamma(concentration + self.points.count as f64);
+        let occupied = self.statistics.iter().filter(|data| data.count > 0.0);
+        labels
+            + occupied
+                .map(|data| {
+                    libm::lgamma(share + data.count) - libm::lgamma(share) + self.prior.log_marginal(data)
+                })
+                .sum::<f64>()
+    }
+}
+
+fn is_active(data: &Statistics) -> bool {
+    data.count > 1.0
+}

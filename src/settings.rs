@@ -1,0 +1,471 @@
+//! TOML → the settings of a run; each value's meaning, unit and source stand in `reproduce/paper.toml`.
+//!
+//! `reproduce/paper.toml` is compiled in as the default, so that it is the only place where a default is
+//! written. A user's file is laid over it; a key that `paper.toml` does not have is an error.
+
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+use toml::{Table, Value};
+
+const PAPER: &str = include_str!("../reproduce/paper.toml");
+const QUICK: &str = include_str!("../reproduce/quick.toml");
+
+/// All settings of a run. Field by field the twin of `reproduce/paper.toml`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Settings {
+    /// The body (section 5.1, figure 4).
+    pub agent: Agent,
+    /// The sensors on it.
+    pub skin: Skin,
+    /// Coordinated random movement (section 5.1).
+    pub motion: Motion,
+    /// The physics engine.
+    pub physics: Physics,
+    /// The tactile sense (equation 25).
+    pub sense: Sense,
+    /// From pressures to symbols (section 4.1).
+    pub quantise: Quantise,
+    /// The DPGMM-LJ and its sampler (section 3).
+    pub schema: Schema,
+    /// What counts as a success (section 5.2).
+    pub evaluate: Evaluate,
+    /// The conditions that are repeated.
+    pub experiment: Experiment,
+}
+
+/// How the parts are joined.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Morphology {
+    /// Five parts in a row.
+    Chain,
+    /// A trunk with two limbs at each end.
+    Star,
+    /// A trunk with two arms at right angles on one end, and two further parts in line on the other.
+    Tee,
+    /// As the tee, with the arms raised by 45°.
+    Y,
+}
+
+/// Geometry of the body; lengths in m, density in kg/m³.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Agent {
+    /// Which part is joined to which.
+    pub morphology: Morphology,
+    /// Length of each cylinder, m.
+    pub part_length: f64,
+    /// Radius of each cylinder, m.
+    pub part_radius: f64,
+    /// Distance between the two ends that a joint connects, m.
+    pub gap: f64,
+    /// Density of the parts, kg/m³.
+    pub density: f64,
+}
+
+/// Layout of the sensors on each part.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Skin {
+    /// Sensors in a ring around the cylinder.
+    pub around: usize,
+    /// Rings along the cylinder.
+    pub along: usize,
+    /// Sensors on both end caps together; half of them on each.
+    pub caps: usize,
+}
+
+/// What the controller takes as the distance to the target.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum AngleError {
+    /// target − angle, with the angle in [−π, π] as ODE reports it.
+    Raw,
+    /// The same wrapped to [−π, π]: the shorter way round.
+    Shortest,
+}
+
+/// Coordinated random movement and its controller (section 5.1).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Motion {
+    /// p, ratio of motor coordination: the probability that a joint stays locked for an epoch, in [0, 1].
+    pub coordination: f64,
+    /// Physics steps between two draws.
+    pub epoch: usize,
+    /// k_p, N·m/rad. Higher is faster, and less stable at a given step.
+    pub stiffness: f64,
+    /// k_d, N·m·s/rad. Times the step over the part's axial inertia it must stay below about 1.
+    pub damping: f64,
+    /// What the controller takes as the distance to the target.
+    pub error: AngleError,
+    /// Most torque that holds a locked joint, N·m.
+    pub lock_torque: f64,
+}
+
+/// Time in the physics engine, s.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Physics {
+    /// One step, s.
+    pub step: f64,
+    /// Simulated time, s.
+    pub duration: f64,
+}
+
+/// The tactile sense (equation 25).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Sense {
+    /// Δt, s: time between two samples, and of the backward difference.
+    pub interval: f64,
+    /// ρ, kg/m³.
+    pub fluid_density: f64,
+}
+
+/// How pressures become levels.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Scheme {
+    /// Level 0 is no pressure; the others hold equally many of that sensor's positive pressures.
+    PerSensor,
+    /// The same with one set of thresholds for all sensors.
+    Pooled,
+    /// Levels of equal width between the smallest and the largest pressure of all sensors.
+    EqualWidth,
+}
+
+/// Quantisation (section 4.1).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Quantise {
+    /// How levels are placed.
+    pub scheme: Scheme,
+    /// N, number of levels, 2 to 256.
+    pub levels: usize,
+}
+
+/// The weight of an edge in the update of the tree (equation 21).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum EdgeWeight {
+    /// Each child keeps the joint q_s it has, whichever parent is weighed.
+    Literal,
+    /// A joint is drawn for each pair of active components, and weighs that pair.
+    Pairwise,
+    /// The joint is integrated out: −log N(μ_s; μ_c, Σ_s + Σ_c).
+    Collapsed,
+}
+
+/// Which draws of a chain are kept.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Keep {
+    /// The last one.
+    Last,
+    /// Every one after burn-in.
+    All,
+}
+
+/// The mixture, its prior and its sampler (section 3).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Schema {
+    /// K, truncation of the weak limit.
+    pub components: usize,
+    /// γ of Dir(γ/K).
+    pub concentration: f64,
+    /// k₀, weight of the prior mean, in observations.
+    pub mean_weight: f64,
+    /// ν₀ − d, where ν₀ > d − 1 are the degrees of freedom of the inverse Wishart.
+    pub extra_freedom: f64,
+    /// Multiplies the prior scale Ψ₀ = covariance(x) / K^(2/d) of Fraley & Raftery (2007).
+    pub scale: f64,
+    /// Weight of the tree's edges.
+    pub edge_weight: EdgeWeight,
+    /// Gibbs sweeps of each chain.
+    pub sweeps: usize,
+    /// Independent chains.
+    pub chains: usize,
+    /// Which draws are kept.
+    pub keep: Keep,
+    /// Sweeps dropped where every draw is kept.
+    pub burn_in: usize,
+}
+
+/// What counts as a success (section 5.2).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Evaluate {
+    /// Least adjusted Rand index at which a tree is counted.
+    pub eligible_ari: f64,
+}
+
+/// The conditions that an experiment repeats.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Experiment {
+    /// d of the body maps.
+    pub dimensions: Vec<usize>,
+    /// Independent simulations.
+    pub simulations: usize,
+    /// Master seed.
+    pub seed: u64,
+}
+
+/// A settings file or value that cannot be used.
+#[derive(Debug, thiserror::Error)]
+pub enum SettingsError {
+    /// The file cannot be read.
+    #[error("{}: cannot read the settings: {source}", path.display())]
+    Unreadable {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// The file is no TOML, or a value has the wrong type.
+    #[error("{origin}: {message}")]
+    Malformed {
+        /// The file.
+        origin: String,
+        /// What is wrong, on one line.
+        message: String,
+    },
+    /// A key that does not exist.
+    #[error("{origin}: unknown setting `{key}`; reproduce/paper.toml lists all of them")]
+    Unknown {
+        /// The file.
+        origin: String,
+        /// The key, with its section.
+        key: String,
+    },
+    /// A value outside its range.
+    #[error("setting `{key}` is {value}, but must be {range}")]
+    OutOfRange {
+        /// The key, with its section.
+        key: &'static str,
+        /// The value.
+        value: String,
+        /// What is allowed.
+        range: &'static str,
+    },
+}
+
+impl Settings {
+    /// The settings of the replication: `reproduce/paper.toml`.
+    pub fn paper() -> Self {
+        Table::try_into(paper_table()).expect("reproduce/paper.toml matches Settings; a test checks it")
+    }
+
+    /// `reproduce/paper.toml`, with `reproduce/quick.toml` over it if `quick`, and `file` over both.
+    ///
+    /// # Errors
+    /// If the file cannot be read, is malformed, has an unknown key, or a value is out of range.
+    pub fn load(quick: bool, file: Option<&Path>) -> Result<Self, SettingsError> {
+        let mut table = paper_table();
+        let mut origin = "reproduce/paper.toml".to_owned();
+        if quick {
+            overlay(&mut table, parse(QUICK, "reproduce/quick.toml")?, "", "reproduce/quick.toml")?;
+        }
+        if let Some(path) = file {
+            let text = std::fs::read_to_string(path)
+                .map_err(|source| SettingsError::Unreadable { path: path.to_owned(), source })?;
+            origin = path.display().to_string();
+            overlay(&mut table, parse(&text, &origin)?, "", &origin)?;
+        }
+        let settings: Self = table.try_into().map_err(|error: toml::de::Error| SettingsError::Malformed {
+            message: error.to_string().trim().replace('\n', " "),
+            origin,
+        })?;
+        settings.validate()?;
+        Ok(settings)
+    }
+
+    /// Checks every range that needs no data.
+    ///
+    /// # Errors
+    /// [`SettingsError::OutOfRange`] for the first value that cannot be used.
+    pub fn validate(&self) -> Result<(), SettingsError> {
+        let positive = |key, value: f64| {
+            check(key, value, value.is_finite() && value > 0.0, "a positive, finite number")
+        };
+        let not_negative =
+            |key, value: f64| check(key, value, value.is_finite() && value >= 0.0, "0 or a positive number");
+        let count = |key, value: usize| check(key, value, value >= 1, "at least 1");
+
+        positive("agent.part_length", self.agent.part_length)?;
+        positive("agent.part_radius", self.agent.part_radius)?;
+        not_negative("agent.gap", self.agent.gap)?;
+        positive("agent.density", self.agent.density)?;
+
+        count("skin.around", self.skin.around)?;
+        count("skin.along", self.skin.along)?;
+        check("skin.caps", self.skin.caps, self.skin.caps.is_multiple_of(2), "even: half on each cap")?;
+        let sensors = self.skin.around.saturating_mul(self.skin.along).saturating_add(self.skin.caps);
+        check("skin.around * skin.along + skin.caps", sensors, sensors <= 100_000, "at most 100000")?;
+
+        let p = self.motion.coordination;
+        check("motion.coordination", p, (0.0..=1.0).contains(&p), "a probability, 0 to 1")?;
+        count("motion.epoch", self.motion.epoch)?;
+        not_negative("motion.stiffness", self.motion.stiffness)?;
+        not_negative("motion.damping", self.motion.damping)?;
+        positive("motion.lock_torque", self.motion.lock_torque)?;
+
+        positive("physics.step", self.physics.step)?;
+        positive("physics.duration", self.physics.duration)?;
+        positive("sense.interval", self.sense.interval)?;
+        positive("sense.fluid_density", self.sense.fluid_density)?;
+        let ratio = self.sense.interval / self.physics.step;
+        let whole = ratio >= 0.5 && (ratio - ratio.round()).abs() < 1e-6 * ratio;
+        check("sense.interval", self.sense.interval, whole, "a whole number of physics.step")?;
+        let samples = self.physics.duration / self.sense.interval;
+        check(
+            "physics.duration",
+            self.physics.duration,
+            (1.0 - 1e-9..=1e8).contains(&samples),
+            "at least one and at most 100 million times sense.interval",
+        )?;
+
+        let levels = self.quantise.levels;
+        check("quantise.levels", levels, (2..=256).contains(&levels), "2 to 256")?;
+
+        let schema = &self.schema;
+        check("schema.components", schema.components, (1..=1000).contains(&schema.components), "1 to 1000")?;
+        positive("schema.concentration", schema.concentration)?;
+        positive("schema.mean_weight", schema.mean_weight)?;
+        let freedom = schema.extra_freedom;
+        check("schema.extra_freedom", freedom, freedom.is_finite() && freedom > -1.0, "above -1")?;
+        positive("schema.scale", schema.scale)?;
+        count("schema.sweeps", schema.sweeps)?;
+        count("schema.chains", schema.chains)?;
+        if schema.keep == Keep::All {
+            check("schema.burn_in", schema.burn_in, schema.burn_in < schema.sweeps, "below schema.sweeps")?;
+        }
+
+        let ari = self.evaluate.eligible_ari;
+        check("evaluate.eligible_ari", ari, (0.0..=1.0).contains(&ari), "0 to 1")?;
+
+        let dimensions = &self.experiment.dimensions;
+        check(
+            "experiment.dimensions",
+            format!("{dimensions:?}"),
+            !dimensions.is_empty()
+                && dimensions[0] >= 1
+                && dimensions.windows(2).all(|pair| pair[0] < pair[1]),
+            "a rising list of dimensions, each at least 1",
+        )?;
+        count("experiment.simulations", self.experiment.simulations)
+    }
+
+    /// Physics steps between two samples.
+    pub fn steps_per_sample(&self) -> usize {
+        (self.sense.interval / self.physics.step).round() as usize
+    }
+
+    /// T, the number of samples.
+    pub fn samples(&self) -> usize {
+        (self.physics.duration / self.sense.interval + 1e-6).floor() as usize
+    }
+}
+
+fn check(
+    key: &'static str,
+    value: impl ToString,
+    within: bool,
+    range: &'static str,
+) -> Result<(), SettingsError> {
+    if within { Ok(()) } else { Err(SettingsError::OutOfRange { key, value: value.to_string(), range }) }
+}
+
+fn paper_table() -> Table {
+    parse(PAPER, "reproduce/paper.toml").expect("reproduce/paper.toml is TOML; a test checks it")
+}
+
+fn parse(text: &str, origin: &str) -> Result<Table, SettingsError> {
+    text.parse().map_err(|error: toml::de::Error| {
+        let line = error
+            .span()
+            .map_or(String::new(), |span| format!("line {}: ", 1 + text[..span.start].matches('\n').count()));
+        SettingsError::Malformed {
+            origin: origin.to_owned(),
+            message: format!("{line}{}", error.message().replace('\n', " ")),
+        }
+    })
+}
+
+/// Lays `over` on `base`, key by key; `section` and `origin` are for the message.
+fn overlay(base: &mut Table, over: Table, section: &str, origin: &str) -> Result<(), SettingsError> {
+    for (name, value) in over {
+        let key = format!("{section}{name}");
+        match (base.get_mut(&name), value) {
+            (Some(Value::Table(base)), Value::Table(over)) => {
+                overlay(base, over, &format!("{key}."), origin)?
+            }
+            // TOML writes 1 for 1.0; a person does too.
+            (Some(slot @ Value::Float(_)), Value::Integer(whole)) => *slot = Value::Float(whole as f64),
+            (Some(slot), value) if slot.same_type(&value) => *slot = value,
+            (Some(slot), value) => {
+                return Err(SettingsError::Malformed {
+                    origin: origin.to_owned(),
+                    message: format!("`{key}` is a {}, but must be a {}", value.type_str(), slot.type_str()),
+                });
+            }
+            (None, _) => return Err(SettingsError::Unknown { origin: origin.to_owned(), key }),
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn load(text: &str) -> Result<Settings, SettingsError> {
+        let file = tempfile::NamedTempFile::new().unwrap();
+        std::fs::write(file.path(), text).unwrap();
+        Settings::load(false, Some(file.path()))
+    }
+
+    #[test]
+    fn both_files_of_the_repository_load() {
+        let paper = Settings::load(false, None).unwrap();
+        assert_eq!(paper, Settings::paper());
+        assert_eq!((paper.samples(), paper.steps_per_sample()), (100_000, 10));
+        assert!(Settings::load(true, None).unwrap().samples() < paper.samples());
+    }
+
+    #[test]
+    fn a_file_changes_only_what_it_names() {
+        let mut expected = Settings::paper();
+        expected.motion.coordination = 1.0;
+        expected.schema.edge_weight = EdgeWeight::Collapsed;
+        assert_eq!(
+            load("[motion]\ncoordination = 1\n[schema]\nedge_weight = \"collapsed\"").unwrap(),
+            expected
+        );
+    }
+
+    #[test]
+    fn mistakes_are_named() {
+        for (text, expected) in [
+            ("[motion]\nspeed = 3", "unknown setting `motion.speed`"),
+            ("[moton]\nepoch = 3", "unknown setting `moton`"),
+            ("[motion]\nepoch = \"long\"", "`motion.epoch` is a string, but must be a integer"),
+            ("[motion]\nepoch = -3", "motion.epoch"),
+            ("[motion\nepoch = 3", "line 1:"),
+            ("[schema]\ncomponents = 0", "`schema.components` is 0, but must be 1 to 1000"),
+            ("[schema]\nedge_weight = \"prim\"", "unknown variant `prim`"),
+            ("[physics]\nstep = nan", "`physics.step` is NaN"),
+            ("[physics]\nstep = 0.03", "a whole number of physics.step"),
+            ("[skin]\ncaps = 3", "even"),
+            ("[experiment]\ndimensions = []", "experiment.dimensions"),
+        ] {
+            let message = load(text).unwrap_err().to_string();
+            assert!(message.contains(expected), "{text:?} gave {message:?}");
+            assert!(!message.contains('\n'), "{message:?} is one line");
+        }
+    }
+}

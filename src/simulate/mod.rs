@@ -1,0 +1,138 @@
+//! Stage 1. Settings → trajectory: the agent moves at random in Open Dynamics Engine (section 5.1).
+
+pub mod motor;
+pub mod world;
+
+use indicatif::ProgressBar;
+
+use self::motor::Motor;
+use self::world::{Pose, Unstable, World};
+use crate::agent::Agent;
+use crate::settings::Settings;
+use crate::streams::Stream;
+
+/// The movement of an agent, sampled every Δt.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Trajectory {
+    /// Number of parts.
+    pub parts: usize,
+    /// Number of joints.
+    pub joints: usize,
+    /// (T + 1) × parts, by time: the pose of each part at 0, Δt, 2Δt, …
+    pub poses: Vec<Pose>,
+    /// (T + 1) × joints, by time: both angles of each joint, rad in [−π, π].
+    pub angles: Vec<[f64; 2]>,
+    /// Whether each joint is locked, for every epoch: epochs × joints, by time.
+    pub locked: Vec<bool>,
+}
+
+impl Trajectory {
+    /// T, the number of samples after the initial pose.
+    pub fn samples(&self) -> usize {
+        self.poses.len() / self.parts - 1
+    }
+}
+
+/// Simulates the whole duration. `progress` advances by one for each sample.
+///
+/// # Errors
+/// [`Unstable`] if the gains are too high for the step.
+pub fn simulate(
+    agent: &Agent,
+    settings: &Settings,
+    rng: &mut Stream,
+    progress: &ProgressBar,
+) -> Result<Trajectory, Unstable> {
+    let (parts, joints) = (agent.parts.len(), agent.joints.len());
+    let (samples, steps_per_sample) = (settings.samples(), settings.steps_per_sample());
+    let mut world = World::new(agent, settings);
+    let mut motor = Motor::new(joints);
+    let mut trajectory = Trajectory {
+        parts,
+        joints,
+        poses: Vec::with_capacity((samples + 1) * parts),
+        angles: Vec::with_capacity((samples + 1) * joints),
+        locked: vec![true; joints],
+    };
+    for step in 0..=samples * steps_per_sample {
+        if step % steps_per_sample == 0 {
+            trajectory.poses.extend((0..parts).map(|part| world.pose(part)));
+            trajectory.angles.extend((0..joints).map(|joint| world.angles(joint)));
+            progress.inc(1);
+        }
+        if step == samples * steps_per_sample {
+            break;
+        }
+        if step > 0 && step % settings.motion.epoch == 0 {
+            motor.draw(&mut world, &settings.motion, rng);
+            trajectory.locked.extend((0..joints).map(|joint| motor.is_locked(joint)));
+        }
+        motor.apply(&mut world, &settings.motion);
+        world.step()?;
+    }
+    Ok(trajectory)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::streams::stream;
+
+    fn run(change: impl Fn(&mut Settings)) -> Result<Trajectory, Unstable> {
+        let mut settings = Settings::paper();
+        settings.physics.duration = 200.0;
+        change(&mut settings);
+        settings.validate().unwrap();
+        let agent = Agent::new(&settings.agent, &settings.skin);
+        simulate(&agent, &settings, &mut stream(1, 1, "motion", 0), &ProgressBar::hidden())
+    }
+
+    #[test]
+    fn the_same_seed_gives_the_same_bits_in_threads_beside_each_other() {
+        let alone = run(|_| ()).unwrap();
+        let threads: Vec<_> = (0..3).map(|_| std::thread::spawn(|| run(|_| ()).unwrap())).collect();
+        for thread in threads {
+            assert_eq!(thread.join().unwrap(), alone);
+        }
+    }
+
+    #[test]
+    fn fully_coordinated_movement_is_no_movement() {
+        let trajectory = run(|settings| settings.motion.coordination = 1.0).unwrap();
+        let first = &trajectory.poses[..trajectory.parts];
+        assert!(trajectory.poses.chunks(trajectory.parts).all(|poses| poses == first));
+    }
+
+    #[test]
+    fn a_joint_follows_its_target() {
+        // Well damped and with time to settle, every axis that moves must come to rest somewhere: its
+        // angle no longer changes at the end of the epoch. The opposite sign of torque would never settle.
+        let trajectory = run(|settings| {
+            settings.motion.coordination = 0.0;
+            settings.motion.epoch = 10_000;
+            settings.agent.part_radius = 0.08;
+            settings.motion.stiffness = 2.0;
+            settings.motion.damping = 2.0;
+        })
+        .unwrap();
+        let last = |back: usize| &trajectory.angles[trajectory.angles.len() - 4 * (1 + back)..][..4];
+        for (now, before) in last(0).iter().zip(last(50)) {
+            assert!((0..2).all(|axis| (now[axis] - before[axis]).abs() < 0.05), "{now:?} {before:?}");
+            assert!(now.iter().any(|angle| angle.abs() > 0.1), "{now:?} moved");
+        }
+    }
+
+    #[test]
+    fn gains_beyond_stability_are_an_error_and_no_abort() {
+        let error = run(|settings| {
+            settings.agent.part_radius = 0.05;
+            settings.agent.part_length = 0.3;
+            settings.agent.gap = 0.0;
+            settings.motion.coordination = 0.0;
+            settings.motion.stiffness = 2.0;
+            settings.motion.damping = 2.0;
+        })
+        .unwrap_err();
+        assert!(error.to_string().contains("lower motion.stiffness"), "{error}");
+    }
+}

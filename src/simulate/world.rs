@@ -1,0 +1,261 @@
+//! The agent in Open Dynamics Engine: the only file with `unsafe` code. Wraps what the agent needs.
+//!
+//! ODE's assertions end the process, so everything handed to it is checked before, and the state of every
+//! body after each step. Each world has its own step threading, because two worlds that share ODE's
+//! default one abort when they step at the same time.
+
+use std::ffi::CStr;
+use std::mem::MaybeUninit;
+use std::ptr::null_mut;
+use std::sync::Once;
+
+use ode_sys as ode;
+
+use crate::agent::{Agent, Vector3};
+use crate::settings;
+
+/// Where a part is and how it is turned.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pose {
+    /// Centre of mass, m.
+    pub position: Vector3,
+    /// Rotation matrix from the part's frame to the world's, by rows.
+    pub rotation: [Vector3; 3],
+}
+
+/// A body whose motion cannot be followed with the present settings.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error(
+    "part {part} reached {speed:.3e} {unit} at step {step} (t = {time:.3} s): the simulation has become \
+     unstable; lower motion.stiffness, motion.damping or physics.step, or enlarge agent.part_radius"
+)]
+pub struct Unstable {
+    /// Index of the part.
+    pub part: usize,
+    /// Its linear or angular speed.
+    pub speed: f64,
+    /// Unit of `speed`.
+    pub unit: &'static str,
+    /// Physics steps taken.
+    pub step: u64,
+    /// Simulated time, s.
+    pub time: f64,
+}
+
+/// A world with one agent, at rest at first, with all joints locked.
+pub struct World {
+    world: ode::dWorldID,
+    threading: ode::dThreadingImplementationID,
+    bodies: Vec<ode::dBodyID>,
+    joints: Vec<ode::dJointID>,
+    step: f64,
+    steps: u64,
+    lock_torque: f64,
+}
+
+/// Version (as built against), and configuration tokens (as linked) of ODE.
+pub fn engine() -> (&'static str, String) {
+    initialise();
+    // SAFETY: ODE is initialised and returns a static, terminated string.
+    let configuration = unsafe { CStr::from_ptr(ode::dGetConfiguration()) };
+    (env!("BODYSCHEMA_ODE_VERSION"), configuration.to_string_lossy().trim().to_owned())
+}
+
+/// ODE wants one initialisation a process and one a thread.
+fn initialise() {
+    static ONCE: Once = Once::new();
+    // SAFETY: `Once` runs the first calls alone; the last one is ODE's documented call for each thread,
+    // and may be repeated.
+    ONCE.call_once(|| unsafe {
+        assert_ne!(ode::dInitODE2(0), 0, "ODE cannot be initialised");
+        ode::ode_shim_install_handlers();
+        assert_eq!(
+            ode::dCheckConfiguration(c"ODE_double_precision".as_ptr()),
+            1,
+            "the installed libode is not double precision"
+        );
+    });
+    let allocated = unsafe { ode::dAllocateODEDataForThread(ode::dAllocateMaskAll as u32) };
+    assert_ne!(allocated, 0, "ODE cannot allocate its data for this thread");
+}
+
+impl World {
+    /// Puts `agent` into a fresh world with ODE's default parameters.
+    ///
+    /// The settings must have passed [`settings::Settings::validate`]: that keeps out of ODE what it would
+    /// abort on.
+    pub fn new(agent: &Agent, settings: &settings::Settings) -> Self {
+        initialise();
+        let geometry = &settings.agent;
+        // SAFETY: handles are used only while `self` owns them; the mass is written by
+        // dMassSetCylinder before it is read, and positive, as validation has checked.
+        unsafe {
+            let world = ode::dWorldCreate();
+            let threading = ode::dThreadingAllocateSelfThreadedImplementation();
+            ode::dWorldSetStepThreadingImplementation(
+                world,
+                ode::dThreadingImplementationGetFunctions(threading),
+                threading,
+            );
+
+            const ALONG_Z: i32 = 3;
+            let mut mass = MaybeUninit::<ode::dMass>::uninit();
+            ode::dMassSetCylinder(
+                mass.as_mut_ptr(),
+                geometry.density,
+                ALONG_Z,
+                geometry.part_radius,
+                geometry.part_length,
+            );
+            let mass = mass.assume_init();
+            let bodies: Vec<_> = agent
+                .parts
+                .iter()
+                .map(|part| {
+                    let body = ode::dBodyCreate(world);
+                    let mut rotation: ode::dMatrix3 = [0.0; 12];
+                    ode::dRFromZAxis(rotation.as_mut_ptr(), part.axis[0], part.axis[1], part.axis[2]);
+                    ode::dBodySetMass(body, &mass);
+                    ode::dBodySetRotation(body, rotation.as_ptr());
+                    ode::dBodySetPosition(body, part.centre[0], part.centre[1], part.centre[2]);
+                    body
+                })
+                .collect();
+            let joints: Vec<_> = agent
+                .joints
+                .iter()
+                .map(|joint| {
+                    let id = ode::dJointCreateUniversal(world, null_mut());
+                    // Attach first: ODE ignores the anchor and axes of a joint without bodies.
+                    ode::dJointAttach(id, bodies[joint.parent], bodies[joint.child]);
+                    let [anchor, first, second] = [joint.anchor, joint.axes[0], joint.axes[1]];
+                    ode::dJointSetUniversalAnchor(id, anchor[0], anchor[1], anchor[2]);
+                    ode::dJointSetUniversalAxis1(id, first[0], first[1], first[2]);
+                    ode::dJointSetUniversalAxis2(id, second[0], second[1], second[2]);
+                    id
+                })
+                .collect();
+            let mut world = Self {
+                world,
+                threading,
+                bodies,
+                joints,
+                step: settings.physics.step,
+                steps: 0,
+                lock_torque: settings.motion.lock_torque,
+            };
+            for joint in 0..world.joints.len() {
+                world.lock(joint);
+            }
+            world
+        }
+    }
+
+    /// Advances the world by one step.
+    ///
+    /// # Errors
+    /// [`Unstable`] if a part turns by more than half a turn in a step, or leaves the range of numbers.
+    pub fn step(&mut self) -> Result<(), Unstable> {
+        // SAFETY: the world is live, its step positive, and its state was found finite after the last one.
+        unsafe { ode::dWorldStep(self.world, self.step) };
+        self.steps += 1;
+        for part in 0..self.bodies.len() {
+            let (linear, angular) = self.velocity(part);
+            let speed = |v: Vector3| v.iter().map(|x| x * x).sum::<f64>().sqrt();
+            // Beyond half a turn a step, a rotation cannot be told from its opposite; and no real motion
+            // of such bodies comes near a kilometre a second.
+            for (speed, limit, unit) in
+                [(speed(angular), std::f64::consts::PI / self.step, "rad/s"), (speed(linear), 1e3, "m/s")]
+            {
+                if !speed.is_finite() || speed >= limit {
+                    let (step, time) = (self.steps, self.steps as f64 * self.step);
+                    return Err(Unstable { part, speed, unit, step, time });
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Linear (m/s) and angular (rad/s) velocity of a part, in the world's frame.
+    pub fn velocity(&self, part: usize) -> (Vector3, Vector3) {
+        // SAFETY: both pointers lead to three numbers of a live body, and are read at once.
+        unsafe {
+            (
+                *ode::dBodyGetLinearVel(self.bodies[part]).cast::<Vector3>(),
+                *ode::dBodyGetAngularVel(self.bodies[part]).cast::<Vector3>(),
+            )
+        }
+    }
+
+    /// Position and rotation of a part.
+    pub fn pose(&self, part: usize) -> Pose {
+        // SAFETY: ODE keeps three numbers of position and three rows of four of rotation for a live body.
+        let (position, rows) = unsafe {
+            (
+                *ode::dBodyGetPosition(self.bodies[part]).cast::<Vector3>(),
+                *ode::dBodyGetRotation(self.bodies[part]).cast::<[[f64; 4]; 3]>(),
+            )
+        };
+        Pose { position, rotation: rows.map(|[x, y, z, _]| [x, y, z]) }
+    }
+
+    /// Both angles of a joint, rad in [−π, π]: the parent relative to the child, 0 in the rest pose.
+    pub fn angles(&self, joint: usize) -> [f64; 2] {
+        // SAFETY: the joint is live and universal.
+        unsafe {
+            [
+                ode::dJointGetUniversalAngle1(self.joints[joint]),
+                ode::dJointGetUniversalAngle2(self.joints[joint]),
+            ]
+        }
+    }
+
+    /// Rates of both angles, rad/s.
+    pub fn rates(&self, joint: usize) -> [f64; 2] {
+        // SAFETY: the joint is live and universal.
+        unsafe {
+            [
+                ode::dJointGetUniversalAngle1Rate(self.joints[joint]),
+                ode::dJointGetUniversalAngle2Rate(self.joints[joint]),
+            ]
+        }
+    }
+
+    /// Applies torques about both axes of a joint for the next step, N·m.
+    pub fn apply_torques(&mut self, joint: usize, torques: [f64; 2]) {
+        // SAFETY: the joint is live and universal; ODE copes with any finite torque, and what a large one
+        // does is seen after the step.
+        debug_assert!(torques.iter().all(|torque| torque.is_finite()));
+        unsafe { ode::dJointAddUniversalTorques(self.joints[joint], torques[0], torques[1]) }
+    }
+
+    /// Holds a joint at its present angles by a motor of zero velocity.
+    pub fn lock(&mut self, joint: usize) {
+        self.set_motor(joint, self.lock_torque);
+    }
+
+    /// Lets a joint turn freely.
+    pub fn unlock(&mut self, joint: usize) {
+        self.set_motor(joint, 0.0);
+    }
+
+    fn set_motor(&mut self, joint: usize, torque: f64) {
+        for (velocity, limit) in [(ode::dParamVel1, ode::dParamFMax1), (ode::dParamVel2, ode::dParamFMax2)] {
+            // SAFETY: the joint is live and universal, and both parameters are its motors'.
+            unsafe {
+                ode::dJointSetUniversalParam(self.joints[joint], velocity as i32, 0.0);
+                ode::dJointSetUniversalParam(self.joints[joint], limit as i32, torque);
+            }
+        }
+    }
+}
+
+impl Drop for World {
+    fn drop(&mut self) {
+        // SAFETY: destroying the world destroys its bodies and joints; the threading outlives it.
+        unsafe {
+            ode::dWorldDestroy(self.world);
+            ode::dThreadingFreeImplementation(self.threading);
+        }
+    }
+}
