@@ -2,11 +2,17 @@
 
 pub mod agent;
 pub mod body_map;
+pub mod claims;
 pub mod distance;
 pub mod evaluate;
+pub mod figures;
+pub mod pipeline;
 pub mod quantise;
+pub mod record;
+pub mod reproduce;
 pub mod schema;
 pub mod sense;
 pub mod settings;
 pub mod simulate;
+pub mod statistics;
 pub mod streams;

@@ -5,6 +5,7 @@
 
 use std::path::{Path, PathBuf};
 
+use clap::ValueEnum;
 use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
 
@@ -126,7 +127,7 @@ pub struct Sense {
 }
 
 /// How pressures become levels.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ValueEnum)]
 #[serde(rename_all = "kebab-case")]
 pub enum Scheme {
     /// Level 0 is no pressure; the others hold equally many of that sensor's positive pressures.
@@ -148,7 +149,7 @@ pub struct Quantise {
 }
 
 /// The weight of an edge in the update of the tree (equation 21).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ValueEnum)]
 #[serde(rename_all = "kebab-case")]
 pub enum EdgeWeight {
     /// Each child keeps the joint q_s it has, whichever parent is weighed.
@@ -160,7 +161,7 @@ pub enum EdgeWeight {
 }
 
 /// Which draws of a chain are kept.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ValueEnum)]
 #[serde(rename_all = "kebab-case")]
 pub enum Keep {
     /// The last one.

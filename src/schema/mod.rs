@@ -6,8 +6,10 @@ pub mod points;
 pub mod sweep;
 pub mod tree;
 
+use clap::ValueEnum;
 use indicatif::ProgressBar;
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 use self::gaussian::{NormalInverseWishart, PriorError};
 use self::points::Points;
@@ -18,7 +20,8 @@ use crate::settings::{Keep, Schema};
 use crate::streams::stream;
 
 /// The mixture to sample from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, ValueEnum)]
+#[serde(rename_all = "kebab-case")]
 pub enum Model {
     /// Dirichlet-process Gaussian mixture model; its tree is found afterwards by Prim's algorithm.
     Dpgmm,

@@ -1,0 +1,395 @@
+//! Arguments → calls of the library, and their results on the screen.
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use anyhow::{Context, Result, ensure};
+use bodyschema::agent::Agent;
+use bodyschema::body_map::ClassicalScaling;
+use bodyschema::claims::{self, Verdict};
+use bodyschema::distance::information_metric;
+use bodyschema::evaluate::{Score, Truth, parts, score};
+use bodyschema::quantise::quantise;
+use bodyschema::record::{npy, tables};
+use bodyschema::reproduce::{self, Run, progress};
+use bodyschema::schema::{Model, Sample, infer};
+use bodyschema::sense::sense;
+use bodyschema::settings::{EdgeWeight, Keep, Scheme, Settings};
+use bodyschema::simulate::simulate;
+use bodyschema::statistics;
+use bodyschema::streams::stream;
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use serde::Serialize;
+
+/// Finds out from tactile information alone how many parts a body has, which sensor sits on which part,
+/// and how the parts are joined: a replication of Mimura, Hagiwara, Taniguchi & Inamura (2017).
+#[derive(Parser)]
+#[command(version, arg_required_else_help = true)]
+pub struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Stages 1 and 2: moves a body at random in a fluid and records the pressure on its sensors.
+    ///
+    /// Writes into DIR: tactile.npy (float32, T x M, Pa), labels.csv (sensor,part), tree.csv (child,parent)
+    /// and joint-angles.csv (time_s, then two angles a joint in rad; T + 1 rows).
+    Simulate {
+        #[command(flatten)]
+        common: Common,
+        /// Folder for the files.
+        #[arg(long, value_name = "DIR")]
+        out: PathBuf,
+    },
+    /// Stages 3 and 4: turns pressures into symbols, and these into the information metric.
+    ///
+    /// Reads pressures (any real type, T x M, Pa, not negative) and writes the distances
+    /// H(X|Y) + H(Y|X) between all pairs of sensors (float64, M x M, bits).
+    Distance {
+        /// Pressures, or with --symbols symbols: a .npy file, a row a time, a column a sensor.
+        tactile: PathBuf,
+        #[arg(long, value_enum,
+              help = with_default("How pressures become levels", paper().quantise.scheme))]
+        scheme: Option<Scheme>,
+        #[arg(long, value_name = "N", conflicts_with = "symbols",
+              help = with_default("Number of levels, no pressure included, 2 to 256", paper().quantise.levels))]
+        levels: Option<usize>,
+        /// The input is symbols already: whole numbers from 0 to 255.
+        #[arg(long, conflicts_with = "scheme")]
+        symbols: bool,
+        #[command(flatten)]
+        file: SettingsFile,
+        /// The distances to write.
+        #[arg(long, value_name = "FILE")]
+        out: PathBuf,
+    },
+    /// Stage 5: places the sensors in D dimensions by classical multidimensional scaling.
+    ///
+    /// Reads distances (M x M) and writes coordinates (float64, M x D, columns by descending eigenvalue, in
+    /// the unit of the distances).
+    Map {
+        /// Distances: a .npy file, M x M, symmetric.
+        distance: PathBuf,
+        /// Number of dimensions.
+        #[arg(long, value_name = "D")]
+        dims: usize,
+        /// The body map to write.
+        #[arg(long, value_name = "FILE")]
+        out: PathBuf,
+    },
+    /// Stages 6 and 7: samples the body schema; with the truth given, evaluates it.
+    ///
+    /// Reads coordinates (M x D) and writes into DIR: assignments.npy (int32, draws x M, component of each
+    /// sensor), samples.csv (a row a draw: chain,parts,log_posterior, and with the truth given
+    /// ari,eligible,tree_correct) and trees.csv (chain,child,parent). With --keep all, a column `sweep`
+    /// follows the chain.
+    Infer {
+        /// Body map: a .npy file, M x D.
+        body_map: PathBuf,
+        /// The mixture; the tree of dpgmm is found by Prim's algorithm on the centres.
+        #[arg(long, value_enum, default_value_t = Model::DpgmmLj)]
+        model: Model,
+        #[arg(long, value_name = "K", help = with_default("Components of the weak limit", paper().schema.components))]
+        components: Option<usize>,
+        #[arg(long, value_name = "N", help = with_default("Independent chains", paper().schema.chains))]
+        chains: Option<usize>,
+        #[arg(long, value_name = "N", help = with_default("Gibbs sweeps of each chain", paper().schema.sweeps))]
+        sweeps: Option<usize>,
+        #[arg(long, value_enum,
+              help = with_default("Edge weight of the minimum spanning tree", paper().schema.edge_weight))]
+        edge_weight: Option<EdgeWeight>,
+        #[arg(long, value_enum,
+              help = with_default("The last draw of each chain, or all after burn-in", paper().schema.keep))]
+        keep: Option<Keep>,
+        #[arg(long, value_name = "N", help = with_default("Sweeps dropped with --keep all", paper().schema.burn_in))]
+        burn_in: Option<usize>,
+        #[command(flatten)]
+        common: Common,
+        /// True part of each sensor: a .csv file with columns sensor,part.
+        #[arg(long, value_name = "FILE", requires = "tree")]
+        labels: Option<PathBuf>,
+        /// True tree: a .csv file with columns child,parent.
+        #[arg(long, value_name = "FILE", requires = "labels")]
+        tree: Option<PathBuf>,
+        /// Folder for the files.
+        #[arg(long, value_name = "DIR")]
+        out: PathBuf,
+    },
+    /// Runs a whole experiment and judges the paper's claims; exit status 0 if all are reproduced, 1 if some
+    /// are not, 2 on trouble.
+    ///
+    /// Writes into DIR: claims.csv and claims.md (a row a claim), figures/*.csv (the data of the paper's
+    /// figures), samples.csv (a row a draw), simulation-N/ (distances, body map, truth) and manifest.json.
+    Reproduce {
+        /// The experiment.
+        #[arg(value_enum)]
+        experiment: Experiment,
+        /// A small run of under a minute that shows all parts working; its numbers are no replication.
+        #[arg(long)]
+        quick: bool,
+        #[arg(long, value_name = "N",
+              help = with_default("Independent simulations", paper().experiment.simulations))]
+        simulations: Option<usize>,
+        #[command(flatten)]
+        common: Common,
+        /// Threads; results do not depend on it [default: one a core]
+        #[arg(long, value_name = "N")]
+        jobs: Option<usize>,
+        /// Folder for the files.
+        #[arg(long, value_name = "DIR")]
+        out: PathBuf,
+    },
+}
+
+#[derive(Args)]
+struct SettingsFile {
+    /// Settings that differ from reproduce/paper.toml, which names and explains all of them.
+    #[arg(long, value_name = "FILE")]
+    settings: Option<PathBuf>,
+}
+
+#[derive(Args)]
+struct Common {
+    #[command(flatten)]
+    file: SettingsFile,
+    #[arg(long, value_name = "S", help = with_default("Master seed of all random numbers", paper().experiment.seed))]
+    seed: Option<u64>,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Experiment {
+    /// Section 5: body schema estimation at p = 0.9, d = 2 ... 15.
+    Exp1,
+}
+
+fn paper() -> Settings {
+    Settings::paper()
+}
+
+/// The name of a setting's value, as settings files write it.
+fn name(value: impl Serialize) -> String {
+    serde_json::to_value(value).expect("a setting's value is plain").to_string().replace('"', "")
+}
+
+fn with_default(text: &str, default: impl Serialize) -> String {
+    format!("{text} [default: {}]", name(default))
+}
+
+/// Puts an option's value over a setting.
+fn set<T>(setting: &mut T, option: Option<T>) {
+    if let Some(value) = option {
+        *setting = value;
+    }
+}
+
+impl Arguments {
+    /// Does what the arguments say.
+    pub fn run(self) -> Result<ExitCode> {
+        match self.command {
+            Command::Simulate { common, out } => run_simulate(&common.load(false)?, &out)?,
+            Command::Distance { tactile, scheme, levels, symbols, file, out } => {
+                let mut settings = Settings::load(false, file.settings.as_deref())?;
+                set(&mut settings.quantise.scheme, scheme);
+                set(&mut settings.quantise.levels, levels);
+                settings.validate()?;
+                run_distance(&tactile, symbols, &settings, &out)?;
+            }
+            Command::Map { distance, dims, out } => run_map(&distance, dims, &out)?,
+            Command::Infer {
+                body_map,
+                model,
+                components,
+                chains,
+                sweeps,
+                edge_weight,
+                keep,
+                burn_in,
+                common,
+                labels,
+                tree,
+                out,
+            } => {
+                let mut settings = common.load(false)?;
+                let schema = &mut settings.schema;
+                set(&mut schema.components, components);
+                set(&mut schema.chains, chains);
+                set(&mut schema.sweeps, sweeps);
+                set(&mut schema.edge_weight, edge_weight);
+                set(&mut schema.keep, keep);
+                set(&mut schema.burn_in, burn_in);
+                settings.validate()?;
+                run_infer(&body_map, model, labels.zip(tree), &settings, &out)?;
+            }
+            Command::Reproduce { experiment: Experiment::Exp1, quick, simulations, common, jobs, out } => {
+                let mut settings = common.load(quick)?;
+                set(&mut settings.experiment.simulations, simulations);
+                settings.validate()?;
+                if let Some(jobs) = jobs {
+                    ensure!(jobs >= 1, "--jobs is 0, but must be at least 1");
+                    rayon::ThreadPoolBuilder::new().num_threads(jobs).build_global()?;
+                }
+                let settings_file = common.file.settings.as_deref();
+                return run_reproduce(&Run { settings: &settings, settings_file, quick, out: &out });
+            }
+        }
+        Ok(ExitCode::SUCCESS)
+    }
+}
+
+impl Common {
+    fn load(&self, quick: bool) -> Result<Settings> {
+        let mut settings = Settings::load(quick, self.file.settings.as_deref())?;
+        set(&mut settings.experiment.seed, self.seed);
+        Ok(settings)
+    }
+}
+
+fn run_simulate(settings: &Settings, out: &Path) -> Result<()> {
+    let agent = Agent::new(&settings.agent, &settings.skin);
+    let bar = progress(settings.samples() as u64 + 1, "simulate".to_owned());
+    let mut rng = stream(settings.experiment.seed, 1, "motion", 0);
+    let trajectory = simulate(&agent, settings, &mut rng, &bar)?;
+    bar.finish_and_clear();
+    let truth = Truth { labels: agent.labels(), tree: agent.tree() };
+    tables::write_truth(&out.join("labels.csv"), &out.join("tree.csv"), &truth)?;
+    tables::write_joint_angles(&out.join("joint-angles.csv"), &trajectory, settings.sense.interval)?;
+    let tactile = sense(&agent, &trajectory, &settings.sense);
+    npy::write_tactile(&out.join("tactile.npy"), &tactile)?;
+    println!(
+        "{} samples of {} sensors on {} parts, seed {}, in {}",
+        tactile.samples,
+        tactile.sensors(),
+        agent.parts.len(),
+        settings.experiment.seed,
+        out.display()
+    );
+    Ok(())
+}
+
+fn run_distance(input: &Path, are_symbols: bool, settings: &Settings, out: &Path) -> Result<()> {
+    let symbols = if are_symbols {
+        npy::read_symbols(input)?
+    } else {
+        quantise(&npy::read_tactile(input)?, &settings.quantise)
+    };
+    let constant = symbols.constant_sensors();
+    if !constant.is_empty() {
+        eprintln!(
+            "bodyschema: {}: {} of {} sensors never change and tell nothing (the first is sensor {})",
+            input.display(),
+            constant.len(),
+            symbols.sensors(),
+            constant[0]
+        );
+    }
+    npy::write_distances(out, &information_metric(&symbols))?;
+    println!(
+        "information metric of {} sensors over {} samples of {} levels, in {}",
+        symbols.sensors(),
+        symbols.samples,
+        symbols.levels,
+        out.display()
+    );
+    Ok(())
+}
+
+fn run_map(input: &Path, dims: usize, out: &Path) -> Result<()> {
+    ensure!(dims >= 1, "--dims is 0, but must be at least 1");
+    let distances = npy::read_distances(input)?;
+    let in_file = || input.display().to_string();
+    let scaling = ClassicalScaling::new(&distances).with_context(in_file)?;
+    let map = scaling.coordinates(dims).with_context(in_file)?;
+    npy::write_body_map(out, &map)?;
+    println!(
+        "body map of {} sensors in {dims} dimensions, in {}; {} eigenvalues are positive, negative ones make up \
+         {:.2} % of all magnitudes",
+        map.points(),
+        out.display(),
+        scaling.positive(),
+        100.0 * scaling.negative_share()
+    );
+    Ok(())
+}
+
+fn run_infer(
+    input: &Path,
+    model: Model,
+    truth: Option<(PathBuf, PathBuf)>,
+    settings: &Settings,
+    out: &Path,
+) -> Result<()> {
+    let map = npy::read_body_map(input)?;
+    let truth = truth.map(|(labels, tree)| tables::read_truth(&labels, &tree, map.points())).transpose()?;
+    let bar = progress(settings.schema.chains as u64, "infer".to_owned());
+    let samples = infer(&map, model, &settings.schema, settings.experiment.seed, 1, &bar)
+        .with_context(|| input.display().to_string())?;
+    bar.finish_and_clear();
+    let scores: Option<Vec<Score>> = truth.map(|truth| {
+        samples.iter().map(|sample| score(sample, &truth, settings.evaluate.eligible_ari)).collect()
+    });
+    let keep = settings.schema.keep;
+    npy::write_assignments(&out.join("assignments.npy"), &samples)?;
+    tables::write_samples(&out.join("samples.csv"), &samples, keep, scores.as_deref())?;
+    tables::write_trees(&out.join("trees.csv"), &samples, keep)?;
+    print_summary(model, &map, &samples, scores.as_deref(), settings, out);
+    Ok(())
+}
+
+fn print_summary(
+    model: Model,
+    map: &bodyschema::body_map::BodyMap,
+    samples: &[Sample],
+    scores: Option<&[Score]>,
+    settings: &Settings,
+    out: &Path,
+) {
+    println!(
+        "{} of {} sensors in {} dimensions: {} draws of {} chains of {} sweeps, seed {}, in {}",
+        model.name(),
+        map.points(),
+        map.dims,
+        samples.len(),
+        settings.schema.chains,
+        settings.schema.sweeps,
+        settings.experiment.seed,
+        out.display()
+    );
+    let counts: Vec<f64> = samples.iter().map(|sample| parts(&sample.labels) as f64).collect();
+    println!("parts: {}", line(&statistics::mean(&counts), "mean"));
+    let best = (0..samples.len())
+        .max_by(|&a, &b| samples[a].log_posterior.total_cmp(&samples[b].log_posterior))
+        .expect("there is at least one chain, which keeps at least one draw");
+    println!("draw of highest log posterior: chain {}, {} parts", samples[best].chain, counts[best]);
+    if let Some(scores) = scores {
+        let aris: Vec<f64> = scores.iter().map(|score| score.ari).collect();
+        println!("adjusted Rand index: {}", line(&statistics::mean(&aris), "mean"));
+        let eligible = scores.iter().filter(|score| score.eligible);
+        let right = eligible.clone().filter(|score| score.tree_correct).count();
+        let rate = statistics::rate(right, eligible.count());
+        println!("tree right among eligible draws: {}", line(&rate, &format!("{right} of {}:", rate.n)));
+    }
+}
+
+fn line(estimate: &statistics::Estimate, what: &str) -> String {
+    match (estimate.value, estimate.interval) {
+        (None, _) => format!("{what} no rate"),
+        (Some(value), None) => format!("{what} {value:.3} (n = {})", estimate.n),
+        (Some(value), Some((low, high))) => {
+            format!("{what} {value:.3} (95 % interval {low:.3} to {high:.3}, n = {})", estimate.n)
+        }
+    }
+}
+
+fn run_reproduce(run: &Run) -> Result<ExitCode> {
+    let judged = reproduce::experiment_1(run)?;
+    println!("{}\n", reproduce::preamble(run));
+    println!("{}\n", claims::terminal_table(&judged));
+    println!("All files are in {}; claims.md says where each value was found.", run.out.display());
+    for line in judged.iter().filter_map(claims::comparison) {
+        println!("{line}");
+    }
+    let all = judged.iter().all(|judged| judged.verdict == Verdict::Reproduced);
+    Ok(ExitCode::from(u8::from(!all)))
+}

@@ -1,0 +1,70 @@
+//! Files that NumPy and a spreadsheet open: every stage's input and output.
+
+pub mod npy;
+pub mod tables;
+
+use std::fs::{self, File};
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+use sha2::{Digest, Sha256};
+
+/// A file that cannot be read or written as what it should be.
+#[derive(Debug, thiserror::Error)]
+#[error("{}: {message}", path.display())]
+pub struct FileError {
+    /// The file.
+    pub path: PathBuf,
+    /// What is wrong with it and what to do.
+    pub message: String,
+}
+
+impl FileError {
+    /// Says `message` of the file at `path`.
+    pub fn new(path: &Path, message: impl ToString) -> Self {
+        Self { path: path.to_owned(), message: message.to_string() }
+    }
+}
+
+/// Writes a file that appears whole or not at all: `write` fills a file beside it, which is synced and
+/// then takes its name. Folders on the way are made.
+///
+/// # Errors
+/// If any of that fails; what was there before is then untouched.
+pub fn write_whole(
+    path: &Path,
+    write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
+) -> Result<(), FileError> {
+    let aside = path.with_added_extension("partial");
+    let attempt = || -> io::Result<()> {
+        if let Some(folder) = path.parent() {
+            fs::create_dir_all(folder)?;
+        }
+        let mut writer = BufWriter::with_capacity(1 << 20, File::create(&aside)?);
+        write(&mut writer)?;
+        writer.into_inner().map_err(io::IntoInnerError::into_error)?.sync_all()?;
+        fs::rename(&aside, path)
+    };
+    attempt().map_err(|error| {
+        // Nothing is lost if it cannot be removed; the error that counts is the first.
+        let _ = fs::remove_file(&aside);
+        FileError::new(path, format!("cannot be written: {error}"))
+    })
+}
+
+/// [`write_whole`] for text.
+///
+/// # Errors
+/// As for [`write_whole`].
+pub fn write_text(path: &Path, text: &str) -> Result<(), FileError> {
+    write_whole(path, |file| file.write_all(text.as_bytes()))
+}
+
+/// SHA-256 of a file, in hexadecimal.
+///
+/// # Errors
+/// If the file cannot be read.
+pub fn sha256(path: &Path) -> Result<String, FileError> {
+    let bytes = fs::read(path).map_err(|error| FileError::new(path, format!("cannot be read: {error}")))?;
+    Ok(Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect())
+}

@@ -1,0 +1,299 @@
+//! Matrices as NumPy's `.npy` files: tactile pressures, symbols, distances, body maps, assignments.
+
+use std::fs::File;
+use std::io::{self, BufReader};
+use std::path::Path;
+
+use npyz::{DType, Deserialize, NpyFile, Order, TypeChar, WriterBuilder};
+
+use super::{FileError, write_whole};
+use crate::body_map::BodyMap;
+use crate::distance::Distances;
+use crate::quantise::Symbols;
+use crate::schema::Sample;
+use crate::sense::Tactile;
+
+/// Writes pressures as float32, T × M. The file is in Fortran order, one sensor's series after another's,
+/// which NumPy reads as any other.
+pub fn write_tactile(path: &Path, tactile: &Tactile) -> Result<(), FileError> {
+    write(path, [tactile.samples, tactile.sensors()], Order::Fortran, tactile.pressures.iter().copied())
+}
+
+/// Writes distances as float64, M × M.
+pub fn write_distances(path: &Path, distances: &Distances) -> Result<(), FileError> {
+    write(path, [distances.sensors; 2], Order::C, distances.values.iter().copied())
+}
+
+/// Writes a body map as float64, M × d.
+pub fn write_body_map(path: &Path, map: &BodyMap) -> Result<(), FileError> {
+    write(path, [map.points(), map.dims], Order::C, map.coordinates.iter().copied())
+}
+
+/// Writes the component of each sensor as int32, samples × M.
+pub fn write_assignments(path: &Path, samples: &[Sample]) -> Result<(), FileError> {
+    let sensors = samples.first().map_or(0, |sample| sample.labels.len());
+    let labels = samples.iter().flat_map(|sample| sample.labels.iter().map(|&label| label as i32));
+    write(path, [samples.len(), sensors], Order::C, labels)
+}
+
+fn write<T: npyz::AutoSerialize>(
+    path: &Path,
+    shape: [usize; 2],
+    order: Order,
+    values: impl Iterator<Item = T>,
+) -> Result<(), FileError> {
+    write_whole(path, |file| {
+        let shape = shape.map(|length| length as u64);
+        let mut writer =
+            npyz::WriteOptions::new().default_dtype().shape(&shape).order(order).writer(file).begin_nd()?;
+        writer.extend(values)?;
+        writer.finish()
+    })
+}
+
+/// Reads pressures, T × M, of any real type; each must be finite and not negative.
+pub fn read_tactile(path: &Path) -> Result<Tactile, FileError> {
+    let matrix = Matrix::read(path, Order::Fortran, |value| match value {
+        value if !value.is_finite() => Err("a pressure must be a finite number"),
+        value if value < 0.0 => Err("a pressure must not be negative (if these are symbols, say --symbols)"),
+        value if value > f64::from(f32::MAX) => Err("a pressure must be in the range of float32"),
+        value => Ok(value as f32),
+    })?;
+    Ok(Tactile { samples: matrix.rows, pressures: matrix.values })
+}
+
+/// Reads symbols, T × M, of any type with whole values from 0 to 255.
+pub fn read_symbols(path: &Path) -> Result<Symbols, FileError> {
+    let matrix = Matrix::read(path, Order::Fortran, |value| {
+        let symbol = value as u8;
+        if f64::from(symbol) == value {
+            Ok(symbol)
+        } else {
+            Err("a symbol must be a whole number from 0 to 255")
+        }
+    })?;
+    let levels = 1 + matrix.values.iter().copied().max().map_or(0, usize::from);
+    Ok(Symbols { samples: matrix.rows, levels, values: matrix.values })
+}
+
+/// Reads distances, M × M: finite, not negative, symmetric, with a zero diagonal.
+pub fn read_distances(path: &Path) -> Result<Distances, FileError> {
+    let matrix = Matrix::read(path, Order::C, |value| match value {
+        value if !value.is_finite() => Err("a distance must be a finite number"),
+        value if value < 0.0 => Err("a distance must not be negative"),
+        value => Ok(value),
+    })?;
+    let sensors = matrix.rows;
+    if matrix.columns != sensors {
+        let message = format!("distances must be a square matrix, but it is {sensors} x {}", matrix.columns);
+        return Err(FileError::new(path, message));
+    }
+    let distances = Distances { sensors, values: matrix.values };
+    for i in 0..sensors {
+        if distances.get(i, i) != 0.0 {
+            let message = format!("row {i}, column {i}: {}; the diagonal must be 0", distances.get(i, i));
+            return Err(FileError::new(path, message));
+        }
+        for j in 0..i {
+            let (lower, upper) = (distances.get(i, j), distances.get(j, i));
+            if (lower - upper).abs() > 1e-9 * (lower + upper) {
+                let message = format!(
+                    "row {i}, column {j}: {lower}, but row {j}, column {i}: {upper}; distances must be symmetric"
+                );
+                return Err(FileError::new(path, message));
+            }
+        }
+    }
+    Ok(distances)
+}
+
+/// Reads a body map, M × d; all coordinates must be finite.
+pub fn read_body_map(path: &Path) -> Result<BodyMap, FileError> {
+    let matrix = Matrix::read(path, Order::C, |value| {
+        if value.is_finite() { Ok(value) } else { Err("a coordinate must be a finite number") }
+    })?;
+    Ok(BodyMap { dims: matrix.columns, coordinates: matrix.values })
+}
+
+struct Matrix<T> {
+    rows: usize,
+    columns: usize,
+    values: Vec<T>,
+}
+
+impl<T: Copy> Matrix<T> {
+    /// Reads a matrix of any real type into the order that is asked for, each value checked by `convert`.
+    fn read(
+        path: &Path,
+        wanted: Order,
+        convert: impl Fn(f64) -> Result<T, &'static str>,
+    ) -> Result<Self, FileError> {
+        let broken = |error: io::Error| match error.kind() {
+            io::ErrorKind::NotFound => FileError::new(path, "no such file"),
+            _ => FileError::new(path, format!("cannot be read as a .npy file: {error}")),
+        };
+        let file = File::open(path).map_err(broken)?;
+        let bytes = file.metadata().map_err(broken)?.len();
+        let npy = NpyFile::new(BufReader::with_capacity(1 << 20, file)).map_err(broken)?;
+
+        let &[rows, columns] = npy.shape() else {
+            let message = format!("must have two dimensions, but its shape is {:?}", npy.shape());
+            return Err(FileError::new(path, message));
+        };
+        if rows == 0 || columns == 0 {
+            return Err(FileError::new(path, format!("is empty: its shape is {rows} x {columns}")));
+        }
+        let dtype = npy.dtype();
+        let unusable =
+            || FileError::new(path, format!("must hold real numbers, but its dtype is {}", dtype.descr()));
+        let DType::Plain(kind) = &dtype else { return Err(unusable()) };
+        let width = kind.num_bytes().ok_or_else(unusable)? as u64;
+        // Before anything is allocated: a header can promise any size.
+        if rows.checked_mul(columns).and_then(|n| n.checked_mul(width)).is_none_or(|size| size > bytes) {
+            let message = format!(
+                "is truncated: its header promises {rows} x {columns} values, the file has {bytes} bytes"
+            );
+            return Err(FileError::new(path, message));
+        }
+        let (rows, columns, order) = (rows as usize, columns as usize, npy.order());
+        let place = |at: usize| match order {
+            Order::C => (at / columns, at % columns),
+            Order::Fortran => (at % rows, at / rows),
+        };
+        let checked = |at: usize, value: f64| {
+            convert(value).map_err(|message| {
+                let (row, column) = place(at);
+                FileError::new(path, format!("row {row}, column {column}: {value}; {message}"))
+            })
+        };
+        let values = match (kind.type_char(), width) {
+            (TypeChar::Float, 4) => collect(npy, path, |at, x: f32| checked(at, x.into())),
+            (TypeChar::Float, 8) => collect(npy, path, |at, x: f64| checked(at, x)),
+            (TypeChar::Int, 1) => collect(npy, path, |at, x: i8| checked(at, x.into())),
+            (TypeChar::Int, 2) => collect(npy, path, |at, x: i16| checked(at, x.into())),
+            (TypeChar::Int, 4) => collect(npy, path, |at, x: i32| checked(at, x.into())),
+            (TypeChar::Int, 8) => collect(npy, path, |at, x: i64| checked(at, x as f64)),
+            (TypeChar::Uint, 1) => collect(npy, path, |at, x: u8| checked(at, x.into())),
+            (TypeChar::Uint, 2) => collect(npy, path, |at, x: u16| checked(at, x.into())),
+            (TypeChar::Uint, 4) => collect(npy, path, |at, x: u32| checked(at, x.into())),
+            (TypeChar::Uint, 8) => collect(npy, path, |at, x: u64| checked(at, x as f64)),
+            _ => Err(unusable()),
+        }?;
+        let values = match (order, wanted) {
+            (Order::C, Order::Fortran) => transpose(&values, rows, columns),
+            (Order::Fortran, Order::C) => transpose(&values, columns, rows),
+            _ => values,
+        };
+        Ok(Self { rows, columns, values })
+    }
+}
+
+fn collect<S: Deserialize, T>(
+    npy: NpyFile<BufReader<File>>,
+    path: &Path,
+    convert: impl Fn(usize, S) -> Result<T, FileError>,
+) -> Result<Vec<T>, FileError> {
+    let length = npy.len() as usize;
+    let values = npy.data::<S>().map_err(|error| FileError::new(path, error))?;
+    let mut converted = Vec::with_capacity(length);
+    for (at, value) in values.enumerate() {
+        let value =
+            value.map_err(|error| FileError::new(path, format!("is truncated or damaged: {error}")))?;
+        converted.push(convert(at, value)?);
+    }
+    Ok(converted)
+}
+
+/// From `rows` rows of `columns` values to `columns` rows of `rows`, in squares that fit the cache.
+fn transpose<T: Copy>(values: &[T], rows: usize, columns: usize) -> Vec<T> {
+    const SIDE: usize = 32;
+    let mut transposed = vec![values[0]; values.len()];
+    for top in (0..rows).step_by(SIDE) {
+        for left in (0..columns).step_by(SIDE) {
+            for row in top..(top + SIDE).min(rows) {
+                for column in left..(left + SIDE).min(columns) {
+                    transposed[column * rows + row] = values[row * columns + column];
+                }
+            }
+        }
+    }
+    transposed
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn folder() -> tempfile::TempDir {
+        tempfile::tempdir().unwrap()
+    }
+
+    #[test]
+    fn what_was_written_is_read_in_either_order() {
+        let folder = folder();
+        let (samples, sensors) = (70, 45);
+        let tactile =
+            Tactile { samples, pressures: (0..samples * sensors).map(|at| at as f32 * 0.25).collect() };
+        let fortran = folder.path().join("fortran.npy");
+        write_tactile(&fortran, &tactile).unwrap();
+        assert_eq!(read_tactile(&fortran).unwrap(), tactile);
+
+        let by_time = transpose(&tactile.pressures, sensors, samples);
+        let c = folder.path().join("c.npy");
+        write(&c, [samples, sensors], Order::C, by_time.iter().map(|&x| f64::from(x))).unwrap();
+        assert_eq!(read_tactile(&c).unwrap(), tactile);
+    }
+
+    #[test]
+    fn symbols_of_any_integer_type_are_read() {
+        let folder = folder();
+        let path = folder.path().join("symbols.npy");
+        write(&path, [2, 3], Order::C, [0_i64, 5, 2, 1, 0, 2].into_iter()).unwrap();
+        let symbols = read_symbols(&path).unwrap();
+        assert_eq!(symbols, Symbols { samples: 2, levels: 6, values: vec![0, 1, 5, 0, 2, 2] });
+    }
+
+    #[test]
+    fn mistakes_are_named_with_their_place() {
+        let folder = folder();
+        let path = folder.path().join("bad.npy");
+        let says = |message: String, expected: &str| {
+            assert!(
+                message.contains(expected) && message.contains("bad.npy"),
+                "{message:?} lacks {expected:?}"
+            );
+        };
+        says(read_tactile(&path).unwrap_err().to_string(), "no such file");
+
+        write(&path, [2, 2], Order::C, [0.0, 1.0, f64::NAN, 2.0].into_iter()).unwrap();
+        says(
+            read_tactile(&path).unwrap_err().to_string(),
+            "row 1, column 0: NaN; a pressure must be a finite",
+        );
+        says(read_body_map(&path).unwrap_err().to_string(), "row 1, column 0: NaN; a coordinate");
+        says(read_symbols(&path).unwrap_err().to_string(), "whole number from 0 to 255");
+
+        write(&path, [2, 2], Order::C, [0.0, 1.0, -1.0, 2.0].into_iter()).unwrap();
+        says(
+            read_tactile(&path).unwrap_err().to_string(),
+            "row 1, column 0: -1; a pressure must not be negative",
+        );
+        write(&path, [2, 2], Order::C, [0.0, 1.0, 3.0, 0.0].into_iter()).unwrap();
+        says(read_distances(&path).unwrap_err().to_string(), "must be symmetric");
+        write(&path, [2, 2], Order::C, [0.5, 1.0, 1.0, 0.0].into_iter()).unwrap();
+        says(read_distances(&path).unwrap_err().to_string(), "the diagonal must be 0");
+        write(&path, [1, 2], Order::C, [0.5, 1.0].into_iter()).unwrap();
+        says(read_distances(&path).unwrap_err().to_string(), "square matrix, but it is 1 x 2");
+        write(&path, [0, 2], Order::C, std::iter::empty::<f64>()).unwrap();
+        says(read_body_map(&path).unwrap_err().to_string(), "is empty");
+
+        write(&path, [100, 100], Order::C, (0..10_000).map(f64::from)).unwrap();
+        let whole = std::fs::read(&path).unwrap();
+        std::fs::write(&path, &whole[..whole.len() / 2]).unwrap();
+        says(read_body_map(&path).unwrap_err().to_string(), "is truncated");
+        std::fs::write(&path, &whole[..whole.len() - 3]).unwrap();
+        says(read_body_map(&path).unwrap_err().to_string(), "is truncated");
+        std::fs::write(&path, "sensor,part\n0,1\n").unwrap();
+        says(read_body_map(&path).unwrap_err().to_string(), "cannot be read as a .npy file");
+    }
+}

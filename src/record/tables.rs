@@ -1,0 +1,216 @@
+//! Tables as CSV: labels, trees, joint angles, samples.
+
+use std::collections::BTreeSet;
+use std::path::Path;
+
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+
+use super::{FileError, write_whole};
+use crate::evaluate::{Score, Truth, parts};
+use crate::schema::Sample;
+use crate::settings::Keep;
+use crate::simulate::Trajectory;
+
+/// Writes rows with a header made of their fields' names; a `None` is an empty cell.
+pub fn write_rows<T: Serialize>(path: &Path, rows: impl IntoIterator<Item = T>) -> Result<(), FileError> {
+    write_whole(path, |file| {
+        let mut writer = csv::Writer::from_writer(file);
+        for row in rows {
+            writer.serialize(row)?;
+        }
+        writer.flush()
+    })
+}
+
+#[derive(Serialize, Deserialize)]
+struct LabelRow {
+    sensor: usize,
+    part: usize,
+}
+
+#[derive(Serialize, Deserialize)]
+struct TreeRow {
+    child: usize,
+    parent: usize,
+}
+
+/// Writes the truth as a table `sensor,part` and a table `child,parent`.
+pub fn write_truth(labels: &Path, tree: &Path, truth: &Truth) -> Result<(), FileError> {
+    write_rows(labels, truth.labels.iter().enumerate().map(|(sensor, &part)| LabelRow { sensor, part }))?;
+    write_rows(tree, truth.tree.iter().map(|&(child, parent)| TreeRow { child, parent }))
+}
+
+/// Reads the truth: a part for each of `sensors` sensors, and a tree over all the parts.
+pub fn read_truth(labels: &Path, tree: &Path, sensors: usize) -> Result<Truth, FileError> {
+    let mut part_of = vec![None; sensors];
+    for LabelRow { sensor, part } in read_rows(labels)? {
+        match part_of.get_mut(sensor) {
+            Some(slot @ None) => *slot = Some(part),
+            Some(Some(_)) => return Err(FileError::new(labels, format!("sensor {sensor} has two parts"))),
+            None => {
+                let message =
+                    format!("sensor {sensor} is not on the body map, which has sensors 0 to {}", sensors - 1);
+                return Err(FileError::new(labels, message));
+            }
+        }
+    }
+    if let Some(sensor) = part_of.iter().position(Option::is_none) {
+        return Err(FileError::new(labels, format!("sensor {sensor} of {sensors} has no part")));
+    }
+    let truth = Truth {
+        labels: part_of.into_iter().flatten().collect(),
+        tree: read_rows(tree)?.into_iter().map(|TreeRow { child, parent }| (child, parent)).collect(),
+    };
+    check_tree(&truth).map_err(|message| FileError::new(tree, message))?;
+    Ok(truth)
+}
+
+/// Whether the edges connect all parts without a cycle: one fewer than parts, and all parts reached.
+fn check_tree(truth: &Truth) -> Result<(), String> {
+    let parts: BTreeSet<usize> = truth.labels.iter().copied().collect();
+    if let Some(part) = truth.tree.iter().flat_map(|&(a, b)| [a, b]).find(|part| !parts.contains(part)) {
+        return Err(format!("part {part} has no sensor in the labels"));
+    }
+    let mut reached: BTreeSet<usize> = parts.first().copied().into_iter().collect();
+    while let Some(next) =
+        truth.tree.iter().find_map(|&(a, b)| match (reached.contains(&a), reached.contains(&b)) {
+            (true, false) => Some(b),
+            (false, true) => Some(a),
+            _ => None,
+        })
+    {
+        reached.insert(next);
+    }
+    if truth.tree.len() + 1 != parts.len() || reached != parts {
+        return Err(format!("{} edges do not make a tree over {} parts", truth.tree.len(), parts.len()));
+    }
+    Ok(())
+}
+
+fn read_rows<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>, FileError> {
+    let mut reader = csv::Reader::from_path(path)
+        .map_err(|error| FileError::new(path, format!("cannot be read: {}", plain(&error))))?;
+    let rows: Result<Vec<T>, _> = reader.deserialize().collect();
+    rows.map_err(|error| {
+        let line = error.position().map_or(String::new(), |position| format!("line {}: ", position.line()));
+        FileError::new(path, format!("{line}{}", plain(&error)))
+    })
+}
+
+/// The csv crate's message without the parts that repeat the place.
+fn plain(error: &csv::Error) -> String {
+    match error.kind() {
+        csv::ErrorKind::Io(error) => error.to_string(),
+        csv::ErrorKind::Deserialize { err, .. } => err.kind().to_string(),
+        _ => error.to_string(),
+    }
+}
+
+/// Writes a row a sample: `time_s`, then both angles of each joint in rad, T + 1 rows.
+pub fn write_joint_angles(path: &Path, trajectory: &Trajectory, interval: f64) -> Result<(), FileError> {
+    write_whole(path, |file| {
+        let mut writer = csv::Writer::from_writer(file);
+        let names = (1..=trajectory.joints)
+            .flat_map(|joint| [1, 2].map(|axis| format!("joint{joint}_angle{axis}_rad")));
+        writer.write_record(std::iter::once("time_s".to_owned()).chain(names))?;
+        for (sample, angles) in trajectory.angles.chunks_exact(trajectory.joints).enumerate() {
+            writer.write_field(format!("{:.6}", sample as f64 * interval))?;
+            for angle in angles.as_flattened() {
+                writer.write_field(format!("{angle:.6}"))?;
+            }
+            writer.write_record(None::<&[u8]>)?;
+        }
+        writer.flush()
+    })
+}
+
+#[derive(Serialize)]
+struct SampleRow {
+    chain: usize,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    sweep: Option<usize>,
+    parts: usize,
+    log_posterior: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    ari: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    eligible: Option<bool>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    tree_correct: Option<bool>,
+}
+
+#[derive(Serialize)]
+struct EdgeRow {
+    chain: usize,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    sweep: Option<usize>,
+    child: usize,
+    parent: usize,
+}
+
+/// Writes `samples.csv`, a row a draw: `chain`, `sweep` where a chain has several draws, `parts`,
+/// `log_posterior`, and `ari`, `eligible` and `tree_correct` if there are scores.
+pub fn write_samples(
+    path: &Path,
+    samples: &[Sample],
+    keep: Keep,
+    scores: Option<&[Score]>,
+) -> Result<(), FileError> {
+    let rows = samples.iter().enumerate().map(|(at, sample)| {
+        let score = scores.map(|scores| &scores[at]);
+        SampleRow {
+            chain: sample.chain,
+            sweep: (keep == Keep::All).then_some(sample.sweep),
+            parts: parts(&sample.labels),
+            log_posterior: sample.log_posterior,
+            ari: score.map(|score| score.ari),
+            eligible: score.map(|score| score.eligible),
+            tree_correct: score.map(|score| score.tree_correct),
+        }
+    });
+    write_rows(path, rows)
+}
+
+/// Writes `trees.csv`, a row an edge; labels are those of the assignments.
+pub fn write_trees(path: &Path, samples: &[Sample], keep: Keep) -> Result<(), FileError> {
+    let rows = samples.iter().flat_map(|sample| {
+        sample.tree.iter().map(move |edge| EdgeRow {
+            chain: sample.chain,
+            sweep: (keep == Keep::All).then_some(sample.sweep),
+            child: edge.child,
+            parent: edge.parent,
+        })
+    });
+    write_rows(path, rows)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_truth_is_read_back_and_its_mistakes_are_named() {
+        let folder = tempfile::tempdir().unwrap();
+        let (labels, tree) = (folder.path().join("labels.csv"), folder.path().join("tree.csv"));
+        let truth = Truth { labels: vec![3, 3, 1, 7], tree: vec![(1, 3), (7, 1)] };
+        write_truth(&labels, &tree, &truth).unwrap();
+        assert_eq!(read_truth(&labels, &tree, 4).unwrap(), truth);
+
+        let rejects = |label_rows: &str, tree_rows: &str, expected: &str| {
+            std::fs::write(&labels, label_rows).unwrap();
+            std::fs::write(&tree, tree_rows).unwrap();
+            let message = read_truth(&labels, &tree, 3).unwrap_err().to_string();
+            assert!(message.contains(expected) && !message.contains('\n'), "{message:?} lacks {expected:?}");
+        };
+        let (good_labels, good_tree) = ("sensor,part\n0,0\n1,1\n2,2\n", "child,parent\n1,0\n2,1\n");
+        rejects("sensor,part\n0,0\n1,1\n1,1\n", good_tree, "sensor 1 has two parts");
+        rejects("sensor,part\n0,0\n1,1\n", good_tree, "sensor 2 of 3 has no part");
+        rejects("sensor,part\n0,0\n1,1\n3,1\n", good_tree, "sensor 3 is not on the body map");
+        rejects("sensor,part\n0,0\n1,x\n", good_tree, "line 3: ");
+        rejects("sensor;part\n0;0\n", good_tree, "missing field `sensor`");
+        rejects(good_labels, "child,parent\n1,0\n", "1 edges do not make a tree over 3 parts");
+        rejects(good_labels, "child,parent\n1,0\n0,1\n", "do not make a tree");
+        rejects(good_labels, "child,parent\n1,0\n9,0\n", "part 9 has no sensor");
+    }
+}
