@@ -1,0 +1,269 @@
+//! The program as a user meets it: every stage by hand, a small experiment, and mistakes.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use bodyschema::body_map::BodyMap;
+use bodyschema::distance::Distances;
+use bodyschema::record::{npy, sha256};
+
+/// A small body that still shows its parts: 5 parts of 24 sensors, 1500 s.
+const SMALL: &str = "
+[skin]
+around = 8
+along = 3
+[physics]
+duration = 1500.0
+[schema]
+chains = 6
+sweeps = 60
+[experiment]
+dimensions = [2, 4]
+seed = 11
+";
+
+fn bodyschema(folder: &Path, arguments: &str) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_bodyschema"))
+        .current_dir(folder)
+        .args(arguments.split_whitespace())
+        .output()
+        .expect("the program starts")
+}
+
+fn succeed(folder: &Path, arguments: &str) -> String {
+    let output = bodyschema(folder, arguments);
+    let errors = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{arguments}: {errors}");
+    assert!(errors.is_empty(), "nothing but results off a terminal: {errors}");
+    String::from_utf8(output.stdout).expect("text")
+}
+
+fn folder_with_settings() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("small.toml"), SMALL).unwrap();
+    folder
+}
+
+/// Rows of a CSV file by column name.
+fn rows(path: &Path) -> Vec<BTreeMap<String, String>> {
+    csv::Reader::from_path(path).unwrap().deserialize().map(Result::unwrap).collect()
+}
+
+fn header(path: &Path) -> String {
+    fs::read_to_string(path).unwrap().lines().next().unwrap().to_owned()
+}
+
+#[test]
+fn stages_by_hand_repeat_the_experiment() {
+    let folder = folder_with_settings();
+    let at = |name: &str| folder.path().join(name);
+    let run = |arguments: &str| succeed(folder.path(), arguments);
+
+    run("simulate --settings small.toml --out body");
+    run("distance body/tactile.npy --settings small.toml --out distance.npy");
+    let map = run("map distance.npy --dims 4 --out body-map.npy");
+    assert!(map.contains("negative ones make up"), "{map}");
+    let summary = run(
+        "infer body-map.npy --settings small.toml --labels body/labels.csv --tree body/tree.csv --out schema",
+    );
+    assert!(summary.contains("tree right among eligible draws"), "{summary}");
+
+    assert_eq!(header(&at("body/labels.csv")), "sensor,part");
+    assert_eq!(header(&at("body/tree.csv")), "child,parent");
+    assert_eq!(header(&at("schema/samples.csv")), "chain,parts,log_posterior,ari,eligible,tree_correct");
+    assert_eq!(header(&at("schema/trees.csv")), "chain,child,parent");
+    assert_eq!(fs::read_to_string(at("body/joint-angles.csv")).unwrap().lines().count(), 1 + 15_001);
+    let tactile = npy::read_tactile(&at("body/tactile.npy")).unwrap();
+    assert_eq!((tactile.samples, tactile.sensors()), (15_000, 120));
+
+    let experiment = bodyschema(folder.path(), "reproduce exp1 --settings small.toml --out exp1");
+    assert!(experiment.status.code().unwrap() <= 1, "{experiment:?}");
+    let same =
+        |by_hand: &str, whole: &str| assert_eq!(fs::read(at(by_hand)).unwrap(), fs::read(at(whole)).unwrap());
+    same("distance.npy", "exp1/simulation-1/distance.npy");
+    same("body-map.npy", "exp1/simulation-1/body-map.npy");
+    same("body/labels.csv", "exp1/simulation-1/labels.csv");
+    same("body/tree.csv", "exp1/simulation-1/tree.csv");
+    let by_hand: Vec<_> =
+        rows(&at("schema/samples.csv")).iter().map(|row| row["log_posterior"].clone()).collect();
+    let whole: Vec<_> = rows(&at("exp1/samples.csv"))
+        .iter()
+        .filter(|row| row["dimension"] == "4" && row["model"] == "dpgmm-lj")
+        .map(|row| row["log_posterior"].clone())
+        .collect();
+    assert_eq!(by_hand, whole);
+}
+
+#[test]
+fn an_experiment_is_the_same_on_any_number_of_threads_and_complete() {
+    let folder = folder_with_settings();
+    let files = |jobs: usize| {
+        let out = folder.path().join(format!("jobs-{jobs}"));
+        let arguments = format!("reproduce exp1 --settings small.toml --jobs {jobs} --out {}", out.display());
+        let output = bodyschema(folder.path(), &arguments);
+        assert!(output.status.code().unwrap() <= 1, "{output:?}");
+        let screen = String::from_utf8(output.stdout).unwrap();
+        let last = screen.lines().last().unwrap();
+        assert!(last.contains("published 84.6 % | reproduced"), "{last}");
+
+        let manifest: serde_json::Value =
+            serde_json::from_str(&fs::read_to_string(out.join("manifest.json")).unwrap()).unwrap();
+        assert_eq!(manifest["threads"], jobs);
+        assert_eq!(manifest["inputs"][0]["sha256"], sha256(&folder.path().join("small.toml")).unwrap());
+        let outputs: BTreeMap<String, Vec<u8>> = manifest["outputs"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|entry| {
+                let name = entry["file"].as_str().unwrap();
+                assert_eq!(entry["sha256"], sha256(&out.join(name)).unwrap(), "{name}");
+                (name.to_owned(), fs::read(out.join(name)).unwrap())
+            })
+            .collect();
+        outputs
+    };
+    let (one, three) = (files(1), files(3));
+    assert_eq!(one, three);
+
+    for (name, bytes) in one.iter().filter(|(name, _)| name.ends_with(".csv")) {
+        let text = String::from_utf8(bytes.clone()).unwrap();
+        assert!(!text.contains("NaN") && !text.contains("inf"), "{name}");
+    }
+    let out = folder.path().join("jobs-1");
+    assert_eq!(
+        header(&out.join("claims.csv")),
+        "id,figure,statement,published,reproduced,n,low,high,tolerance,verdict"
+    );
+    let claims = rows(&out.join("claims.csv"));
+    assert_eq!((claims[0]["id"].as_str(), claims[0]["published"].as_str()), ("tree-accuracy", "84.6 %"));
+    // d = 14 was not run, so there is no rate, and that is what the table says.
+    assert_eq!((claims[0]["reproduced"].as_str(), claims[0]["verdict"].as_str()), ("", "not testable"));
+    for name in ["fig07-parts.csv", "fig08b-ari.csv", "fig10-tree.csv"] {
+        assert!(!rows(&out.join("figures").join(name)).is_empty(), "{name}");
+    }
+    let counted: usize = rows(&out.join("figures/fig07-parts.csv"))
+        .iter()
+        .map(|row| row["count"].parse::<usize>().unwrap())
+        .sum();
+    assert_eq!(counted, 2 * 6, "two dimensions, six chains");
+}
+
+/// Five Gaussian clusters in a row, far apart, so that any working sampler finds them.
+fn separated_clusters(folder: &Path) -> PathBuf {
+    let wave = |at: usize| (at as f64 * 12.9898).sin() * 0.3;
+    let coordinates = (0..100).flat_map(|i| [10.0 * (i / 20) as f64 + wave(i), wave(7 * i + 3)]).collect();
+    let path = folder.join("clusters.npy");
+    npy::write_body_map(&path, &BodyMap { dims: 2, coordinates }).unwrap();
+    let labels: String = (0..100).map(|i| format!("{i},{}\n", i / 20)).collect();
+    fs::write(folder.join("labels.csv"), format!("sensor,part\n{labels}")).unwrap();
+    fs::write(folder.join("tree.csv"), "child,parent\n1,0\n2,1\n3,2\n4,3\n").unwrap();
+    path
+}
+
+#[test]
+fn foreign_data_is_clustered_and_every_draw_can_be_kept() {
+    let folder = tempfile::tempdir().unwrap();
+    separated_clusters(folder.path());
+    let shared = "--chains 20 --sweeps 400 --labels labels.csv --tree tree.csv";
+    for model in ["dpgmm", "dpgmm-lj"] {
+        succeed(folder.path(), &format!("infer clusters.npy --model {model} {shared} --out {model}"));
+        let rows = rows(&folder.path().join(model).join("samples.csv"));
+        let best = rows
+            .iter()
+            .max_by(|a, b| {
+                a["log_posterior"].parse::<f64>().unwrap().total_cmp(&b["log_posterior"].parse().unwrap())
+            })
+            .unwrap();
+        let found = (best["parts"].as_str(), best["ari"].as_str(), best["tree_correct"].as_str());
+        assert_eq!(found, ("5", "1.0", "true"), "{model}");
+    }
+
+    succeed(folder.path(), "infer clusters.npy --chains 2 --sweeps 12 --keep all --burn-in 4 --out all");
+    let all = rows(&folder.path().join("all/samples.csv"));
+    assert_eq!(header(&folder.path().join("all/samples.csv")), "chain,sweep,parts,log_posterior");
+    let draws: Vec<_> = all.iter().map(|row| (row["chain"].as_str(), row["sweep"].as_str())).collect();
+    assert_eq!((draws.len(), draws[0], draws[15]), (16, ("0", "5"), ("1", "12")));
+}
+
+#[test]
+fn symbols_are_taken_as_they_are_and_constant_sensors_reported() {
+    let folder = tempfile::tempdir().unwrap();
+    // Two sensors: one bit, and a constant. As symbols: H(X|Y) = 1 bit.
+    let tactile =
+        bodyschema::sense::Tactile { samples: 4, pressures: vec![0.0, 1.0, 0.0, 1.0, 3.0, 3.0, 3.0, 3.0] };
+    npy::write_tactile(&folder.path().join("symbols.npy"), &tactile).unwrap();
+    let output = bodyschema(folder.path(), "distance symbols.npy --symbols --out distance.npy");
+    let (errors, status) = (String::from_utf8(output.stderr).unwrap(), output.status.code());
+    assert_eq!(status, Some(0));
+    assert!(errors.contains("1 of 2 sensors never change") && errors.contains("sensor 1"), "{errors}");
+    let distances = npy::read_distances(&folder.path().join("distance.npy")).unwrap();
+    assert_eq!(distances, Distances { sensors: 2, values: vec![0.0, 1.0, 1.0, 0.0] });
+}
+
+#[test]
+fn a_mistake_is_one_line_that_says_what_and_where_and_status_2() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    separated_clusters(folder.path());
+    npy::write_distances(
+        &at("line.npy"),
+        &Distances { sensors: 3, values: vec![0., 1., 2., 1., 0., 1., 2., 1., 0.] },
+    )
+    .unwrap();
+    npy::write_body_map(&at("wide.npy"), &BodyMap { dims: 3, coordinates: vec![1.0; 6] }).unwrap();
+    npy::write_body_map(&at("flat.npy"), &BodyMap { dims: 2, coordinates: vec![1., 5., 2., 5., 4., 5.] })
+        .unwrap();
+    npy::write_body_map(&at("nan.npy"), &BodyMap { dims: 1, coordinates: vec![1.0, f64::NAN] }).unwrap();
+    fs::write(at("text.npy"), "hello").unwrap();
+    fs::write(at("unknown.toml"), "[motion]\nspeed = 1").unwrap();
+    fs::write(at("broken.toml"), "[motion\n").unwrap();
+    fs::write(at("zero.toml"), "[schema]\ncomponents = 0").unwrap();
+    fs::write(at("wild.toml"), "[motion]\ncoordination = 0.0\nstiffness = 1e6\n[physics]\nduration = 60.0")
+        .unwrap();
+    fs::write(at("short.csv"), "sensor,part\n0,0\n").unwrap();
+    fs::write(at("file"), "").unwrap();
+
+    for (arguments, expected) in [
+        ("distance absent.npy --out d.npy", "absent.npy: no such file"),
+        ("distance text.npy --out d.npy", "text.npy: cannot be read as a .npy file"),
+        ("distance nan.npy --out d.npy", "row 1, column 0: NaN"),
+        ("distance nan.npy --symbols --out d.npy", "row 1, column 0: NaN"),
+        ("distance line.npy --levels 1 --out d.npy", "`quantise.levels` is 1, but must be 2 to 256"),
+        ("map wide.npy --dims 2 --out m.npy", "square matrix, but it is 2 x 3"),
+        ("map line.npy --dims 4 --out m.npy", "at most 1"),
+        ("map line.npy --dims 0 --out m.npy", "--dims is 0"),
+        ("map line.npy --dims 1 --out file/m.npy", "file/m.npy: cannot be written"),
+        ("infer flat.npy --out s", "flat.npy: the 3 points span fewer than 2 dimensions"),
+        ("infer nan.npy --out s", "row 1, column 0: NaN"),
+        ("infer clusters.npy --components 0 --out s", "`schema.components` is 0, but must be 1 to 1000"),
+        ("infer clusters.npy --settings zero.toml --out s", "`schema.components` is 0"),
+        ("infer clusters.npy --chains 0 --out s", "`schema.chains` is 0"),
+        (
+            "infer clusters.npy --labels short.csv --tree tree.csv --out s",
+            "short.csv: sensor 1 of 100 has no part",
+        ),
+        (
+            "infer clusters.npy --labels labels.csv --tree labels.csv --out s",
+            "labels.csv: line 2: missing field `child`",
+        ),
+        ("simulate --settings absent.toml --out s", "absent.toml: cannot read the settings"),
+        ("simulate --settings unknown.toml --out s", "unknown.toml: unknown setting `motion.speed`"),
+        ("simulate --settings broken.toml --out s", "broken.toml: line 1"),
+        ("simulate --settings wild.toml --out s", "lower motion.stiffness"),
+        ("reproduce exp1 --jobs 0 --out s", "--jobs is 0"),
+        ("reproduce exp1 --simulations 0 --out s", "`experiment.simulations` is 0"),
+    ] {
+        let output = bodyschema(folder.path(), arguments);
+        let errors = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{arguments}: {errors}");
+        assert_eq!(errors.lines().count(), 1, "{arguments}: {errors}");
+        assert!(errors.contains(expected), "{arguments}: {errors:?} lacks {expected:?}");
+    }
+    // Arguments that do not fit are clap's to explain, with the same status.
+    assert_eq!(
+        bodyschema(folder.path(), "infer clusters.npy --labels labels.csv --out s").status.code(),
+        Some(2)
+    );
+}
