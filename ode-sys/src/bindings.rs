@@ -344,6 +344,9 @@ unsafe extern "C" {
     pub fn dWorldGetERP(arg1: dWorldID) -> dReal;
 }
 unsafe extern "C" {
+    pub fn dWorldSetCFM(arg1: dWorldID, cfm: dReal);
+}
+unsafe extern "C" {
     pub fn dWorldGetCFM(arg1: dWorldID) -> dReal;
 }
 unsafe extern "C" {
@@ -391,6 +394,9 @@ unsafe extern "C" {
 }
 unsafe extern "C" {
     pub fn dBodyGetMass(arg1: dBodyID, mass: *mut dMass);
+}
+unsafe extern "C" {
+    pub fn dBodyAddForce(arg1: dBodyID, fx: dReal, fy: dReal, fz: dReal);
 }
 unsafe extern "C" {
     pub fn dBodyGetGyroscopicMode(b: dBodyID) -> ::std::os::raw::c_int;

@@ -259,3 +259,6 @@ impl Drop for World {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;
