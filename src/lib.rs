@@ -16,3 +16,6 @@ pub mod settings;
 pub mod simulate;
 pub mod statistics;
 pub mod streams;
+
+#[cfg(test)]
+mod testing;

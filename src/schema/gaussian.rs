@@ -200,3 +200,6 @@ impl NormalInverseWishart {
         wishart + normal
     }
 }
+
+#[cfg(test)]
+mod tests;

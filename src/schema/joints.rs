@@ -34,3 +34,37 @@ pub fn collapsed_cost(s: &Gaussian, c: &Gaussian) -> f64 {
     let log_det = 2.0 * factor.l_dirty().diagonal().iter().map(|x| x.ln()).sum::<f64>();
     0.5 * (whitened.norm_squared() + log_det + offset.len() as f64 * (2.0 * std::f64::consts::PI).ln())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::streams::stream;
+    use crate::testing::{ALPHA, ks_one_sample, scalar_gaussian};
+
+    /// Integral over the real line of N(q; s) N(q; c) from −∞ to `end`, by the midpoint rule.
+    fn product_mass(s: &Gaussian, c: &Gaussian, end: f64) -> f64 {
+        const STEP: f64 = 1e-3;
+        let density = |q: f64| (-cost(&DVector::from_element(1, q), s, c)).exp();
+        let steps = ((end + 10.0) / STEP) as usize;
+        (0..steps).map(|i| density(-10.0 + (i as f64 + 0.5) * STEP) * STEP).sum()
+    }
+
+    #[test]
+    fn a_joint_follows_the_product_of_both_densities_and_not_one_alone() {
+        let (s, c) = (scalar_gaussian(1.0, 0.5), scalar_gaussian(-0.4, 1.2));
+        let mut rng = stream(1, 1, "joint", 0);
+        let draws: Vec<f64> = (0..4000).map(|_| draw_between(&s, &c, &mut rng)[0]).collect();
+        let total = product_mass(&s, &c, 10.0);
+        assert!(ks_one_sample(&draws, |q| product_mass(&s, &c, q) / total) > ALPHA);
+        // The broken twin forgets the parent.
+        let alone: Vec<f64> = (0..4000).map(|_| s.draw(&mut rng)[0]).collect();
+        assert!(ks_one_sample(&alone, |q| product_mass(&s, &c, q) / total) < ALPHA);
+    }
+
+    #[test]
+    fn the_collapsed_cost_is_the_integral_over_the_joint() {
+        let (s, c) = (scalar_gaussian(1.0, 0.5), scalar_gaussian(-0.4, 1.2));
+        let integral = product_mass(&s, &c, 10.0);
+        assert!((collapsed_cost(&s, &c) + integral.ln()).abs() < 1e-9);
+    }
+}

@@ -28,11 +28,13 @@ impl Points {
         let (count, dims) = (map.points(), map.dims);
         let mean = |k: usize| map.coordinates.iter().skip(k).step_by(dims).sum::<f64>() / count as f64;
         let means: Vec<f64> = (0..dims).map(mean).collect();
-        let rows: Vec<f64> = map
-            .coordinates
-            .chunks_exact(dims)
-            .flat_map(|row| row.iter().zip(&means).map(|(x, m)| x - m))
-            .collect();
+        let centred = |row: &[f64]| row.iter().zip(&means).map(|(x, m)| x - m).collect::<Vec<_>>();
+        Self::from_rows(dims, map.coordinates.chunks_exact(dims).flat_map(centred).collect())
+    }
+
+    /// Takes points as they are, by rows.
+    pub(super) fn from_rows(dims: usize, rows: Vec<f64>) -> Self {
+        let count = rows.len() / dims;
         let mut blocks = vec![0.0; count.div_ceil(LANES) * dims * LANES];
         for (i, row) in rows.chunks_exact(dims).enumerate() {
             for (k, x) in row.iter().enumerate() {
@@ -156,5 +158,47 @@ impl Statistics {
         let mut scatter = &self.outer - correction;
         scatter.fill_upper_triangle_with_lower_triangle();
         scatter
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::RngExt;
+
+    use super::*;
+    use crate::streams::stream;
+
+    #[test]
+    fn densities_agree_with_the_textbook_in_all_dimensions_and_on_any_processor() {
+        let mut rng = stream(1, 1, "densities", 0);
+        for dims in 1..=15 {
+            let rows: Vec<f64> = (0..37 * dims).map(|_| rng.random_range(-2.0..2.0)).collect();
+            let points = Points::from_rows(dims, rows);
+            let mean = DVector::from_fn(dims, |_, _| rng.random_range(-1.0..1.0));
+            let root = DMatrix::from_fn(dims, dims, |i, j| match i.cmp(&j) {
+                std::cmp::Ordering::Less => 0.0,
+                std::cmp::Ordering::Equal => rng.random_range(0.5..2.0),
+                std::cmp::Ordering::Greater => rng.random_range(-0.5..0.5),
+            });
+            let gaussian = Gaussian::new(mean.clone(), root.clone());
+            let mut found = vec![0.0; points.padded()];
+            points.log_densities(&gaussian, &mut found);
+
+            let covariance = (root.transpose() * &root).try_inverse().unwrap();
+            let determinant = covariance.determinant();
+            let inverse = covariance.try_inverse().unwrap();
+            for i in 0..points.count {
+                let offset = DVector::from_row_slice(points.row(i)) - &mean;
+                let square = (offset.transpose() * &inverse * &offset)[0];
+                let textbook =
+                    -0.5 * (square + determinant.ln() + dims as f64 * (2.0 * std::f64::consts::PI).ln());
+                assert!((found[i] - textbook).abs() < 1e-9, "d = {dims}: {} {textbook}", found[i]);
+            }
+
+            let mut portable = vec![0.0; points.padded()];
+            LogDensities { points: &points, gaussian: &gaussian, densities: &mut portable }
+                .with_simd(pulp::Scalar::new());
+            assert_eq!(found, portable, "the same bits without vector instructions");
+        }
     }
 }

@@ -78,6 +78,7 @@ impl<'a> Chain<'a> {
     pub fn sweep(&mut self, rng: &mut impl Rng) {
         self.draw_labels(rng);
         self.count();
+        self.drop_inactive_joints();
         self.draw_given_labels(rng);
     }
 
@@ -117,13 +118,17 @@ impl<'a> Chain<'a> {
         }
     }
 
-    /// Brings the statistics up to date with the labels, and drops the joints of components that are no
-    /// longer active: a joint is drawn "for each activated component" (section 3.2).
+    /// Brings the statistics up to date with the labels.
     fn count(&mut self) {
         self.statistics.iter_mut().for_each(Statistics::clear);
         for (i, &label) in self.labels.iter().enumerate() {
             self.statistics[label].add(self.points.row(i));
         }
+    }
+
+    /// Drops the joints of components that are no longer active: a joint is drawn "for each activated
+    /// component" (section 3.2).
+    fn drop_inactive_joints(&mut self) {
         let statistics = &self.statistics;
         self.joints.retain(|Joint { edge, .. }| {
             is_active(&statistics[edge.child]) && is_active(&statistics[edge.parent])
@@ -155,9 +160,6 @@ impl<'a> Chain<'a> {
     fn update_tree(&mut self, rng: &mut impl Rng) {
         let active = self.active();
         let components = &self.gaussians;
-        let between = |edge: &Edge, rng: &mut _| {
-            joints::draw_between(&components[edge.child], &components[edge.parent], rng)
-        };
         self.joints = match self.settings.edge_weight {
             EdgeWeight::Literal => {
                 // Each component but the root has one joint, drawn given the parent it has; one that has
@@ -166,7 +168,7 @@ impl<'a> Chain<'a> {
                 for &s in &active {
                     let edge = self.joints.iter().map(|joint| joint.edge).find(|edge| edge.child == s);
                     own[s] = Some(match edge {
-                        Some(edge) => between(&edge, rng),
+                        Some(edge) => self.draw_joint(edge, rng),
                         None => components[s].draw(rng),
                     });
                 }
@@ -181,7 +183,7 @@ impl<'a> Chain<'a> {
                 let mut drawn: Vec<Option<(f64, DVector<f64>)>> = vec![None; size * size];
                 for (at, &s) in active.iter().enumerate() {
                     for &c in &active[..at] {
-                        let q = between(&Edge { child: s, parent: c }, rng);
+                        let q = self.draw_joint(Edge { child: s, parent: c }, rng);
                         drawn[c * size + s] = Some((joints::cost(&q, &components[s], &components[c]), q));
                     }
                 }
@@ -196,10 +198,15 @@ impl<'a> Chain<'a> {
             EdgeWeight::Collapsed => {
                 prim(&active, |s, c| joints::collapsed_cost(&components[s], &components[c]))
                     .into_iter()
-                    .map(|edge| Joint { edge, position: between(&edge, rng) })
+                    .map(|edge| Joint { edge, position: self.draw_joint(edge, rng) })
                     .collect()
             }
         };
+    }
+
+    /// q of an edge (equation 18).
+    fn draw_joint(&self, edge: Edge, rng: &mut impl Rng) -> DVector<f64> {
+        joints::draw_between(&self.gaussians[edge.child], &self.gaussians[edge.parent], rng)
     }
 
     /// The active components: those of more than one point (section 3.2).
@@ -239,3 +246,6 @@ impl<'a> Chain<'a> {
 fn is_active(data: &Statistics) -> bool {
     data.count > 1.0
 }
+
+#[cfg(test)]
+mod tests;
