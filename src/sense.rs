@@ -93,20 +93,44 @@ mod tests {
         }
     }
 
+    /// Whether each sensor feels ρ max(0, l·n − l·Rn)² / Δt² when its part turns by `angle` about its own
+    /// centre: the closed form of the backward difference for a rotation R about the x axis, for sensors at
+    /// l with normal n. The mutant takes the normal of the earlier sample.
+    fn rotation_agrees(angle: f64, mutant: bool) -> bool {
+        let (sine, cosine) = angle.sin_cos();
+        let rotation = [[1.0, 0.0, 0.0], [0.0, cosine, -sine], [0.0, sine, cosine]];
+        let (agent, tactile) = felt(Pose { position: [0.3, -0.2, 0.1], rotation });
+        agent.sites.iter().zip(tactile.series()).all(|(Site { position: l, normal: n, .. }, series)| {
+            let turned = |v: &Vector3| [v[0], cosine * v[1] - sine * v[2], sine * v[1] + cosine * v[2]];
+            let dot = |a: &Vector3, b: &Vector3| (0..3).map(|i| a[i] * b[i]).sum::<f64>();
+            let moved = if mutant { dot(&turned(l), n) - dot(l, n) } else { dot(l, n) - dot(l, &turned(n)) };
+            let outward = moved.max(0.0) / 0.1;
+            let expected = 1010.0 * outward * outward;
+            (f64::from(series[0]) - expected).abs() <= 1e-5 * expected + 1e-12
+        })
+    }
+
     #[test]
-    fn spinning_about_its_own_axis_is_felt_only_by_the_chord() {
-        let (sine, cosine) = 0.3_f64.sin_cos();
-        let (_, tactile) = felt(Pose {
-            position: [0.3, -0.2, 0.1],
-            rotation: [[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]],
-        });
-        // r (1 - cos a) outward along the later normal: (r - r cos a) / dt.
-        let outward = 0.03 * (1.0 - cosine) / 0.1;
-        let expected = (1010.0 * outward * outward) as f32;
-        for (index, series) in tactile.series().enumerate() {
-            let on_side = index % 170 < 168;
-            let expected = if on_side { expected } else { 0.0 };
-            assert!((series[0] - expected).abs() <= 1e-4 * expected, "{index}: {}", series[0]);
+    fn pure_rotation_agrees_with_the_closed_form_at_each_sensor() {
+        for angle in [0.001, 0.1, -0.7, 2.0] {
+            assert!(rotation_agrees(angle, false), "{angle}");
+            assert!(!rotation_agrees(angle, true), "the earlier normal is told apart at {angle}");
         }
+    }
+
+    #[test]
+    fn pressure_is_density_times_speed_squared() {
+        // kg/m³ · (m/s)² = Pa: twice the kinetic energy of a unit volume of fluid at the sensor's speed.
+        let identity = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let pose = |x: f64| Pose { position: [x, 0.0, 0.0], rotation: identity };
+        let site = Site { part: 0, position: [0.0; 3], normal: [1.0, 0.0, 0.0] };
+        let pressure = |way: f64, interval: f64, fluid_density: f64| {
+            pressure_between(&pose(0.0), &pose(way), &site, &Sense { interval, fluid_density })
+        };
+        let speed = 0.2 / 0.1;
+        assert!((pressure(0.2, 0.1, 1010.0) - 2.0 * (0.5 * 1010.0 * speed * speed)).abs() < 1e-9);
+        assert!((pressure(0.2, 0.2, 1010.0) - pressure(0.2, 0.1, 1010.0) / 4.0).abs() < 1e-9);
+        assert!((pressure(0.2, 0.1, 505.0) - pressure(0.2, 0.1, 1010.0) / 2.0).abs() < 1e-9);
+        assert_eq!(pressure(-0.2, 0.1, 1010.0), 0.0, "backwards is exactly nothing");
     }
 }

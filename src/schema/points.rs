@@ -187,12 +187,12 @@ mod tests {
             let covariance = (root.transpose() * &root).try_inverse().unwrap();
             let determinant = covariance.determinant();
             let inverse = covariance.try_inverse().unwrap();
-            for i in 0..points.count {
+            for (i, found) in found.iter().enumerate().take(points.count) {
                 let offset = DVector::from_row_slice(points.row(i)) - &mean;
                 let square = (offset.transpose() * &inverse * &offset)[0];
                 let textbook =
                     -0.5 * (square + determinant.ln() + dims as f64 * (2.0 * std::f64::consts::PI).ln());
-                assert!((found[i] - textbook).abs() < 1e-9, "d = {dims}: {} {textbook}", found[i]);
+                assert!((found - textbook).abs() < 1e-9, "d = {dims}: {found} {textbook}");
             }
 
             let mut portable = vec![0.0; points.padded()];

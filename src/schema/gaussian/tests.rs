@@ -103,15 +103,15 @@ fn the_component_s_conditional_agrees_with_the_posterior_on_a_grid() {
     let lambda = |j: usize| 12.0 * (j as f64 + 0.5) / SIDE as f64;
     let mut over_mu = vec![0.0; SIDE];
     let mut over_lambda = vec![0.0; SIDE];
-    for i in 0..SIDE {
-        for j in 0..SIDE {
+    for (i, mass_at_mu) in over_mu.iter_mut().enumerate() {
+        for (j, mass_at_lambda) in over_lambda.iter_mut().enumerate() {
             let (m, l) = (mu(i), lambda(j));
             let wishart = (freedom / 2.0 - 1.0) * l.ln() - psi * l / 2.0;
             let normal = |x: f64, precision: f64| 0.5 * precision.ln() - 0.5 * precision * (x - m).powi(2);
             let log: f64 =
                 wishart + normal(mean, weight * l) + points.iter().map(|x| normal(*x, l)).sum::<f64>();
-            over_mu[i] += log.exp();
-            over_lambda[j] += log.exp();
+            *mass_at_mu += log.exp();
+            *mass_at_lambda += log.exp();
         }
     }
     let distribution = |masses: Vec<f64>, low: f64, width: f64| {

@@ -346,9 +346,8 @@ mod joint_distribution {
         chain.draw_gaussians(rng);
         chain.joints.extend(missing);
         chain.draw_weights(rng);
-        for at in 0..TREE.len() {
-            chain.joints[at].position = chain.draw_joint(TREE[at], rng);
-        }
+        let positions = TREE.map(|edge| chain.draw_joint(edge, rng));
+        chain.joints.iter_mut().zip(positions).for_each(|(joint, position)| joint.position = position);
         State {
             labels: chain.labels,
             gaussians: chain.gaussians,

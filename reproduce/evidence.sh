@@ -1,0 +1,18 @@
+#!/usr/bin/env bash
+# The evidence that is too slow for the tests: recovery of trees drawn from the model, and line coverage.
+# Writes tests/evidence/. Takes about five minutes on two cores, and more where it must install
+# cargo-tarpaulin first.
+set -euo pipefail
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+out=$root/tests/evidence
+
+"$root/reproduce/install.sh"
+mkdir -p "$out"
+cargo run --quiet --release --locked --manifest-path "$root/Cargo.toml" --example recovery "$out"
+
+# llvm-cov needs a rustup component that distributions lack; tarpaulin traces without it.
+cargo tarpaulin --version >/dev/null 2>&1 || cargo install --quiet --locked cargo-tarpaulin
+cargo tarpaulin --engine ptrace --locked --manifest-path "$root/Cargo.toml" --target-dir "$root/target/coverage" \
+    --include-files 'src/*' --skip-clean --out Json --output-dir "$root/target/coverage" >/dev/null
+"$root/reproduce/coverage.py" "$root" "$root/target/coverage/tarpaulin-report.json" >"$out/coverage.md"
+cat "$out/coverage.md"

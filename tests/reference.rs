@@ -1,0 +1,190 @@
+//! Agreement with NumPy, SciPy, scikit-learn and statsmodels; `tests/reference/make.py` made the values.
+
+use bodyschema::body_map::ClassicalScaling;
+use bodyschema::distance::{Distances, information_metric};
+use bodyschema::evaluate::adjusted_rand_index;
+use bodyschema::quantise::Symbols;
+use bodyschema::schema::gaussian::NormalInverseWishart;
+use bodyschema::schema::points::Statistics;
+use bodyschema::schema::tree::prim;
+use bodyschema::statistics;
+use nalgebra::{DMatrix, DVector};
+use serde::Deserialize;
+
+#[derive(Deserialize)]
+struct Reference {
+    information_metric: InformationMetric,
+    classical_scaling: Scaling,
+    adjusted_rand: Vec<AdjustedRand>,
+    spanning_trees: Vec<SpanningTree>,
+    marginal_likelihoods: Vec<MarginalLikelihood>,
+    statistics: Intervals,
+}
+
+#[derive(Deserialize)]
+struct InformationMetric {
+    levels: usize,
+    symbols: Vec<Vec<u8>>,
+    metric: Vec<Vec<f64>>,
+}
+
+#[derive(Deserialize)]
+struct Scaling {
+    distances: Vec<Vec<f64>>,
+    eigenvalues: Vec<f64>,
+    negative_share: f64,
+    within: Vec<Vec<f64>>,
+}
+
+#[derive(Deserialize)]
+struct AdjustedRand {
+    first: Vec<usize>,
+    second: Vec<usize>,
+    ari: f64,
+}
+
+#[derive(Deserialize)]
+struct SpanningTree {
+    weights: Vec<Vec<f64>>,
+    edges: Vec<(usize, usize)>,
+}
+
+#[derive(Deserialize)]
+struct MarginalLikelihood {
+    prior: Prior,
+    points: Vec<Vec<f64>>,
+    log_marginal: f64,
+}
+
+#[derive(Deserialize)]
+struct Prior {
+    mean: Vec<f64>,
+    mean_weight: f64,
+    scale: Vec<Vec<f64>>,
+    freedom: f64,
+}
+
+#[derive(Deserialize)]
+struct Intervals {
+    wilson: Vec<Wilson>,
+    newcombe: Vec<Newcombe>,
+    mann_whitney: Vec<MannWhitney>,
+}
+
+#[derive(Deserialize)]
+struct Wilson {
+    k: usize,
+    n: usize,
+    interval: (f64, f64),
+}
+
+#[derive(Deserialize)]
+struct Newcombe {
+    counts: (usize, usize, usize, usize),
+    interval: (f64, f64),
+}
+
+#[derive(Deserialize)]
+struct MannWhitney {
+    first: Vec<f64>,
+    second: Vec<f64>,
+    p: f64,
+}
+
+fn reference() -> Reference {
+    serde_json::from_str(include_str!("reference/reference.json")).expect("reference.json has this form")
+}
+
+fn close(found: f64, expected: f64, tolerance: f64) {
+    assert!((found - expected).abs() <= tolerance, "{found} is not {expected}");
+}
+
+#[test]
+fn information_metric_agrees_with_scikit_learn() {
+    let InformationMetric { levels, symbols, metric } = reference().information_metric;
+    let distances =
+        information_metric(&Symbols { samples: symbols[0].len(), levels, values: symbols.concat() });
+    for (i, row) in metric.iter().enumerate() {
+        for (j, expected) in row.iter().enumerate() {
+            close(distances.get(i, j), *expected, 1e-9);
+        }
+    }
+    assert_eq!(distances.get(6, 7), 0.0, "another name for the same symbols is no distance");
+}
+
+#[test]
+fn body_maps_agree_with_numpy_eigh() {
+    let Scaling { distances, eigenvalues, negative_share, within } = reference().classical_scaling;
+    let sensors = distances.len();
+    let scaling = ClassicalScaling::new(&Distances { sensors, values: distances.concat() }).unwrap();
+    scaling.eigenvalues.iter().zip(&eigenvalues).for_each(|(found, expected)| close(*found, *expected, 1e-8));
+    close(scaling.negative_share(), negative_share, 1e-10);
+    let map = scaling.coordinates(3).unwrap();
+    let row = |i: usize| &map.coordinates[3 * i..][..3];
+    for (i, distances) in within.iter().enumerate() {
+        for (j, expected) in distances.iter().enumerate() {
+            let found = row(i).iter().zip(row(j)).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();
+            close(found, *expected, 1e-8);
+        }
+    }
+}
+
+#[test]
+fn adjusted_rand_index_agrees_with_scikit_learn() {
+    for AdjustedRand { first, second, ari } in reference().adjusted_rand {
+        close(adjusted_rand_index(&first, &second), ari, 1e-12);
+    }
+}
+
+#[test]
+fn the_baseline_s_tree_agrees_with_scipy() {
+    for SpanningTree { weights, edges } in reference().spanning_trees {
+        let nodes: Vec<usize> = (0..weights.len()).collect();
+        let mut found: Vec<(usize, usize)> = prim(&nodes, |a, b| weights[a][b])
+            .iter()
+            .map(|edge| (edge.child.min(edge.parent), edge.child.max(edge.parent)))
+            .collect();
+        found.sort_unstable();
+        assert_eq!(found, edges);
+    }
+}
+
+#[test]
+fn marginal_likelihoods_agree_with_scipy_s_multivariate_t() {
+    for MarginalLikelihood { prior, points, log_marginal } in reference().marginal_likelihoods {
+        let dims = prior.mean.len();
+        let model = |freedom: f64| {
+            let scale = DMatrix::from_row_slice(dims, dims, &prior.scale.concat());
+            NormalInverseWishart::new(
+                DVector::from_vec(prior.mean.clone()),
+                prior.mean_weight,
+                scale,
+                freedom,
+            )
+            .unwrap()
+        };
+        let mut data = Statistics::new(dims);
+        points.iter().for_each(|point| data.add(point));
+        close(model(prior.freedom).log_marginal(&data), log_marginal, 1e-9);
+        let wrong = model(prior.freedom + 1.0).log_marginal(&data);
+        assert!((wrong - log_marginal).abs() > 1e-2, "one degree of freedom too many is seen");
+    }
+}
+
+#[test]
+fn intervals_and_tests_agree_with_statsmodels_and_scipy() {
+    let Intervals { wilson, newcombe, mann_whitney } = reference().statistics;
+    for Wilson { k, n, interval } in wilson {
+        let found = statistics::rate(k, n).interval.unwrap();
+        close(found.0, interval.0, 1e-9);
+        close(found.1, interval.1, 1e-9);
+    }
+    for Newcombe { counts: (k_1, n_1, k_2, n_2), interval } in newcombe {
+        let found = statistics::rate_difference((k_1, n_1), (k_2, n_2));
+        close(found.0, interval.0, 1e-9);
+        close(found.1, interval.1, 1e-9);
+    }
+    for MannWhitney { first, second, p } in mann_whitney {
+        close(statistics::mann_whitney(&first, &second), p, 1e-9);
+    }
+}

@@ -1,0 +1,128 @@
+"""Makes reference.json: what NumPy, SciPy, scikit-learn and statsmodels say of small random inputs.
+
+Run: pip install numpy==2.4.6 scipy==1.17.1 scikit-learn==1.9.1 statsmodels==0.15.0
+     python tests/reference/make.py
+"""
+
+import json
+import pathlib
+
+import numpy as np
+import scipy.sparse.csgraph
+import scipy.special
+import scipy.stats
+import sklearn.metrics
+from statsmodels.stats.proportion import confint_proportions_2indep, proportion_confint
+
+rng = np.random.default_rng(20170101)
+
+
+def information_metric():
+    """H(X|Y) + H(Y|X) = H(X) + H(Y) - 2 I(X; Y), in bits, by scikit-learn and SciPy."""
+    samples, sensors, levels = 400, 10, 4
+    base = rng.integers(0, levels, (samples, 1))
+    noise = rng.integers(0, levels, (samples, sensors))
+    symbols = np.where(rng.random((samples, sensors)) < 0.5, base, noise)
+    symbols[:, 3] = 2  # never changes
+    symbols[:, 7] = (symbols[:, 6] + 1) % levels  # another name for the same
+    entropy = [scipy.stats.entropy(np.bincount(column), base=2) for column in symbols.T]
+    metric = [
+        [
+            entropy[i] + entropy[j] - 2 * sklearn.metrics.mutual_info_score(symbols[:, i], symbols[:, j]) / np.log(2)
+            for j in range(sensors)
+        ]
+        for i in range(sensors)
+    ]
+    return {"levels": levels, "symbols": symbols.T.tolist(), "metric": metric}
+
+
+def classical_scaling():
+    """Distances within the classical body map of 3 dimensions, by numpy.linalg.eigh."""
+    points = rng.normal(size=(25, 6))
+    distances = np.abs(points[:, None] - points[None]).sum(axis=2)  # city block: not Euclidean
+    n = len(distances)
+    centring = np.eye(n) - 1 / n
+    values, vectors = np.linalg.eigh(-0.5 * centring @ distances**2 @ centring)
+    order = np.argsort(values)[::-1]
+    values, vectors = values[order], vectors[:, order]
+    embedded = vectors[:, :3] * np.sqrt(values[:3])
+    within = np.linalg.norm(embedded[:, None] - embedded[None], axis=2)
+    share = -values[values < 0].sum() / np.abs(values).sum()
+    return {
+        "distances": distances.tolist(),
+        "eigenvalues": values.tolist(),
+        "negative_share": share,
+        "within": within.tolist(),
+    }
+
+
+def adjusted_rand():
+    cases = []
+    for n in [2, 5, 20, 200]:
+        for clusters in [1, 3, n]:
+            first, second = rng.integers(0, clusters, n), rng.integers(0, 5, n)
+            noisy = np.where(rng.random(n) < 0.8, first, second)
+            cases += [
+                {"first": a.tolist(), "second": b.tolist(), "ari": sklearn.metrics.adjusted_rand_score(a, b)}
+                for a, b in [(first, second), (first, noisy)]
+            ]
+    return cases
+
+
+def spanning_trees():
+    """The baseline's tree: SciPy's minimum spanning tree over the distances between centres."""
+    cases = []
+    for n in range(2, 11):
+        centres = rng.normal(size=(n, 4))
+        weights = np.linalg.norm(centres[:, None] - centres[None], axis=2)
+        tree = scipy.sparse.csgraph.minimum_spanning_tree(weights).tocoo()
+        edges = sorted([int(min(i, j)), int(max(i, j))] for i, j in zip(tree.row, tree.col))
+        cases.append({"weights": weights.tolist(), "edges": edges})
+    return cases
+
+
+def marginal_likelihoods():
+    """log p(x) under a normal-inverse-Wishart prior, by the chain rule of SciPy's multivariate t."""
+    cases = []
+    for d in [1, 2, 5]:
+        basis = rng.normal(size=(d, d + 2))
+        m, k, psi, nu = rng.normal(size=d), 0.3, basis @ basis.T, d + 1.5
+        points = rng.normal(size=(7, d)) * 2
+        prior = {"mean": m.tolist(), "mean_weight": k, "scale": psi.tolist(), "freedom": nu}
+        total = 0.0
+        for x in points:
+            shape = psi * (k + 1) / (k * (nu - d + 1))
+            total += scipy.stats.multivariate_t.logpdf(x, loc=m, shape=shape, df=nu - d + 1)
+            psi = psi + k / (k + 1) * np.outer(x - m, x - m)
+            m, k, nu = (k * m + x) / (k + 1), k + 1, nu + 1
+        cases.append({"prior": prior, "points": points.tolist(), "log_marginal": total})
+    return cases
+
+
+def statistics():
+    wilson = [
+        {"k": k, "n": n, "interval": list(map(float, proportion_confint(k, n, method="wilson")))}
+        for k, n in [(11, 13), (77, 91), (0, 20), (20, 20), (3, 7)]
+    ]
+    newcombe = [
+        {"counts": c, "interval": list(map(float, confint_proportions_2indep(*c, method="newcomb")))}
+        for c in [(56, 70, 48, 80), (9, 10, 3, 10), (10, 10, 0, 10), (72, 73, 11, 13)]
+    ]
+    mann_whitney = []
+    for n, m, shift in [(5, 6, 0.5), (40, 30, 0.0), (40, 30, 0.4)]:
+        first, second = np.round(rng.normal(size=n), 1), np.round(rng.normal(size=m) + shift, 1)
+        p = scipy.stats.mannwhitneyu(first, second, method="asymptotic").pvalue
+        mann_whitney.append({"first": first.tolist(), "second": second.tolist(), "p": float(p)})
+    return {"wilson": wilson, "newcombe": newcombe, "mann_whitney": mann_whitney}
+
+
+reference = {
+    "information_metric": information_metric(),
+    "classical_scaling": classical_scaling(),
+    "adjusted_rand": adjusted_rand(),
+    "spanning_trees": spanning_trees(),
+    "marginal_likelihoods": marginal_likelihoods(),
+    "statistics": statistics(),
+}
+path = pathlib.Path(__file__).with_name("reference.json")
+path.write_text(json.dumps(reference) + "\n")
