@@ -10,9 +10,10 @@ out=$root/tests/evidence
 mkdir -p "$out"
 cargo run --quiet --release --locked --manifest-path "$root/Cargo.toml" --example recovery "$out"
 
-# llvm-cov needs a rustup component that distributions lack; tarpaulin traces without it.
+# cargo-llvm-cov needs a rustup component; tarpaulin reads the compiler's counters by itself. Dead code stays out
+# because pulp, which faer brings, does not compile with it.
 cargo tarpaulin --version >/dev/null 2>&1 || cargo install --quiet --locked cargo-tarpaulin
-cargo tarpaulin --engine ptrace --locked --manifest-path "$root/Cargo.toml" --target-dir "$root/target/coverage" \
+cargo tarpaulin --engine llvm --no-dead-code --timeout 1800 --locked --manifest-path "$root/Cargo.toml" --target-dir "$root/target/coverage" \
     --include-files 'src/*' --skip-clean --out Json --output-dir "$root/target/coverage" >/dev/null
 "$root/reproduce/coverage.py" "$root" "$root/target/coverage/tarpaulin-report.json" >"$out/coverage.md"
 cat "$out/coverage.md"
