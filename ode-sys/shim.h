@@ -4,8 +4,14 @@
 
 #include <stddef.h>
 
+#include <ode/ode.h>
+
 /* Sends ODE's messages, warnings and fatal errors to this shim instead of ODE's own printing. */
 void ode_shim_install_handlers(void);
+
+/* dWorldStep, except that a fatal error inside it returns 1 instead of ending the process; 0 otherwise.
+ * After a 1 the world is in an unknown state: it must be neither stepped, read nor destroyed again. */
+int ode_shim_world_step(dWorldID world, dReal step);
 
 /* Copies the calling thread's latest message into buffer (at most size - 1 characters, always
  * terminated), forgets it, and returns its length; 0 when ODE has said nothing since. */

@@ -3,7 +3,7 @@
 # Writes tests/evidence/. Takes about five minutes on two cores, and more where it must install
 # cargo-tarpaulin first.
 set -euo pipefail
-root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+root=$(CDPATH= cd -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")/.." && pwd)
 out=$root/tests/evidence
 
 "$root/reproduce/install.sh"

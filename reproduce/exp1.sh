@@ -3,7 +3,7 @@
 # --help); results go to results/exp1 unless --out says otherwise. Status: 0 every claim reproduced, 1 some
 # claim not, 2 trouble.
 set -euo pipefail
-root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+root=$(CDPATH= cd -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")/.." && pwd)
 manifest=(--release --locked --manifest-path "$root/Cargo.toml")
 
 "$root/reproduce/install.sh" || exit 2

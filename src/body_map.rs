@@ -37,6 +37,9 @@ pub struct ClassicalScaling {
 /// A body map that cannot be made.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum MapError {
+    /// All sensors show the same.
+    #[error("the {0} sensors are all at distance 0 from each other, so that there is nothing to map")]
+    NoDifference(usize),
     /// More dimensions than the distances span.
     #[error(
         "{dims} dimensions were asked for, but the distances between {sensors} sensors span only {positive} \
@@ -103,6 +106,9 @@ impl ClassicalScaling {
     pub fn coordinates(&self, dims: usize) -> Result<BodyMap, MapError> {
         let n = self.eigenvalues.len();
         let positive = self.positive();
+        if positive == 0 {
+            return Err(MapError::NoDifference(n));
+        }
         if dims > positive {
             return Err(MapError::TooManyDimensions { dims, sensors: n, positive });
         }

@@ -134,7 +134,9 @@ pub fn published() -> Vec<Claim> {
 
 /// Judges a claim.
 pub fn judge(claim: Claim, conditions: &Conditions) -> Judged {
-    let (low, high) = claim.accept;
+    // A bound at the end of a share's scale excludes nothing, so no value is near to it.
+    let low = if claim.accept.0 == 0.0 { f64::NEG_INFINITY } else { claim.accept.0 };
+    let high = if claim.accept.1 == 1.0 { f64::INFINITY } else { claim.accept.1 };
     let measured = measure(&claim.measure, conditions);
     let mut untested = Vec::new();
     let mut worst: Option<(f64, &Estimate, &str)> = None;
@@ -221,7 +223,10 @@ fn measure(measure: &Measure, conditions: &Conditions) -> Vec<(String, Estimate)
             let highest = rates.iter().map(|(_, rate)| *rate).reduce(f64::max);
             let best: Vec<usize> =
                 rates.iter().filter(|(_, rate)| Some(*rate) == highest).map(|(d, _)| *d).collect();
-            let value = if best.contains(dimension) { Some(dimension) } else { best.first() };
+            // Without a rate at the published dimension there is nothing to compare with.
+            let tested = rates.iter().any(|(d, _)| d == dimension);
+            let value =
+                if best.contains(dimension) { Some(dimension) } else { best.first().filter(|_| tested) };
             let n = rates.iter().map(|(d, _)| conditions.trees(*model, *d).1).sum();
             let place = match highest {
                 Some(highest) => format!("{:.1} % at d = {}", 100.0 * highest, list(&best)),
@@ -448,6 +453,19 @@ mod tests {
         assert_eq!(tie.verdict, Verdict::Reproduced);
         let better = judge_by_id("best-dimension", &[at(12, true), at(14, false)]);
         assert_eq!((better.verdict, better.reproduced.value), (Verdict::NotReproduced, Some(12.0)));
+    }
+
+    #[test]
+    fn the_worst_of_a_one_sided_range_is_the_one_nearest_to_its_bound() {
+        let at = |d, ari| record(Model::DpgmmLj, d, 5, ari, false);
+        let judged = judge_by_id("ari-unknown-number", &[at(3, 1.0), at(4, 0.85), at(5, 0.95)]);
+        assert_eq!((judged.verdict, judged.reproduced.value), (Verdict::Reproduced, Some(0.85)));
+    }
+
+    #[test]
+    fn the_best_dimension_is_not_testable_where_the_published_one_was_not_run() {
+        let judged = judge_by_id("best-dimension", &[record(Model::DpgmmLj, 4, 5, 1.0, true)]);
+        assert_eq!(judged.verdict, Verdict::NotTestable);
     }
 
     #[test]

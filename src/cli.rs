@@ -1,5 +1,7 @@
 //! Arguments → calls of the library, and their results on the screen.
 
+use std::fmt::Display;
+use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -10,7 +12,7 @@ use bodyschema::claims::{self, Verdict};
 use bodyschema::distance::information_metric;
 use bodyschema::evaluate::{Score, Truth, parts, score};
 use bodyschema::quantise::quantise;
-use bodyschema::record::{npy, tables};
+use bodyschema::record::{npy, prepare_folder, tables};
 use bodyschema::reproduce::{self, Run, progress};
 use bodyschema::schema::{Model, Sample, infer};
 use bodyschema::sense::sense;
@@ -45,7 +47,7 @@ enum Command {
     },
     /// Stages 3 and 4: turns pressures into symbols, and these into the information metric.
     ///
-    /// Reads pressures (any real type, T x M, Pa, not negative) and writes the distances
+    /// Reads pressures (float32, float64 or integers, T x M, Pa, not negative) and writes the distances
     /// H(X|Y) + H(Y|X) between all pairs of sensors (float64, M x M, bits).
     Distance {
         /// Pressures, or with --symbols symbols: a .npy file, a row a time, a column a sensor.
@@ -227,7 +229,7 @@ impl Arguments {
                 set(&mut settings.experiment.simulations, simulations);
                 settings.validate()?;
                 if let Some(jobs) = jobs {
-                    ensure!(jobs >= 1, "--jobs is 0, but must be at least 1");
+                    ensure!((1..=1024).contains(&jobs), "--jobs is {jobs}, but must be 1 to 1024");
                     rayon::ThreadPoolBuilder::new().num_threads(jobs).build_global()?;
                 }
                 let settings_file = common.file.settings.as_deref();
@@ -246,7 +248,16 @@ impl Common {
     }
 }
 
+/// Prints a line. A reader that has gone away is no trouble: the files are written all the same.
+fn say(line: impl Display) -> Result<()> {
+    match writeln!(std::io::stdout(), "{line}") {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(error).context("standard output"),
+        _ => Ok(()),
+    }
+}
+
 fn run_simulate(settings: &Settings, out: &Path) -> Result<()> {
+    prepare_folder(out)?;
     let agent = Agent::new(&settings.agent, &settings.skin);
     let bar = progress(settings.samples() as u64 + 1, "simulate".to_owned());
     let mut rng = stream(settings.experiment.seed, 1, "motion", 0);
@@ -257,14 +268,14 @@ fn run_simulate(settings: &Settings, out: &Path) -> Result<()> {
     tables::write_joint_angles(&out.join("joint-angles.csv"), &trajectory, settings.sense.interval)?;
     let tactile = sense(&agent, &trajectory, &settings.sense);
     npy::write_tactile(&out.join("tactile.npy"), &tactile)?;
-    println!(
+    say(format!(
         "{} samples of {} sensors on {} parts, seed {}, in {}",
         tactile.samples,
         tactile.sensors(),
         agent.parts.len(),
         settings.experiment.seed,
         out.display()
-    );
+    ))?;
     Ok(())
 }
 
@@ -285,13 +296,13 @@ fn run_distance(input: &Path, are_symbols: bool, settings: &Settings, out: &Path
         );
     }
     npy::write_distances(out, &information_metric(&symbols))?;
-    println!(
+    say(format!(
         "information metric of {} sensors over {} samples of {} levels, in {}",
         symbols.sensors(),
         symbols.samples,
         symbols.levels,
         out.display()
-    );
+    ))?;
     Ok(())
 }
 
@@ -302,14 +313,14 @@ fn run_map(input: &Path, dims: usize, out: &Path) -> Result<()> {
     let scaling = ClassicalScaling::new(&distances).with_context(in_file)?;
     let map = scaling.coordinates(dims).with_context(in_file)?;
     npy::write_body_map(out, &map)?;
-    println!(
+    say(format!(
         "body map of {} sensors in {dims} dimensions, in {}; {} eigenvalues are positive, negative ones make up \
          {:.2} % of all magnitudes",
         map.points(),
         out.display(),
         scaling.positive(),
-        100.0 * scaling.negative_share()
-    );
+        100.0 * scaling.negative_share().abs()
+    ))?;
     Ok(())
 }
 
@@ -321,6 +332,7 @@ fn run_infer(
     out: &Path,
 ) -> Result<()> {
     let map = npy::read_body_map(input)?;
+    prepare_folder(out)?;
     let truth = truth.map(|(labels, tree)| tables::read_truth(&labels, &tree, map.points())).transpose()?;
     let bar = progress(settings.schema.chains as u64, "infer".to_owned());
     let samples = infer(&map, model, &settings.schema, settings.experiment.seed, 1, &bar)
@@ -333,8 +345,7 @@ fn run_infer(
     npy::write_assignments(&out.join("assignments.npy"), &samples)?;
     tables::write_samples(&out.join("samples.csv"), &samples, keep, scores.as_deref())?;
     tables::write_trees(&out.join("trees.csv"), &samples, keep)?;
-    print_summary(model, &map, &samples, scores.as_deref(), settings, out);
-    Ok(())
+    print_summary(model, &map, &samples, scores.as_deref(), settings, out)
 }
 
 fn print_summary(
@@ -344,8 +355,8 @@ fn print_summary(
     scores: Option<&[Score]>,
     settings: &Settings,
     out: &Path,
-) {
-    println!(
+) -> Result<()> {
+    say(format!(
         "{} of {} sensors in {} dimensions: {} draws of {} chains of {} sweeps, seed {}, in {}",
         model.name(),
         map.points(),
@@ -355,21 +366,22 @@ fn print_summary(
         settings.schema.sweeps,
         settings.experiment.seed,
         out.display()
-    );
+    ))?;
     let counts: Vec<f64> = samples.iter().map(|sample| parts(&sample.labels) as f64).collect();
-    println!("parts: {}", line(&statistics::mean(&counts), "mean"));
+    say(format!("parts: {}", line(&statistics::mean(&counts), "mean")))?;
     let best = (0..samples.len())
         .max_by(|&a, &b| samples[a].log_posterior.total_cmp(&samples[b].log_posterior))
         .expect("there is at least one chain, which keeps at least one draw");
-    println!("draw of highest log posterior: chain {}, {} parts", samples[best].chain, counts[best]);
+    say(format!("draw of highest log posterior: chain {}, {} parts", samples[best].chain, counts[best]))?;
     if let Some(scores) = scores {
         let aris: Vec<f64> = scores.iter().map(|score| score.ari).collect();
-        println!("adjusted Rand index: {}", line(&statistics::mean(&aris), "mean"));
+        say(format!("adjusted Rand index: {}", line(&statistics::mean(&aris), "mean")))?;
         let eligible = scores.iter().filter(|score| score.eligible);
         let right = eligible.clone().filter(|score| score.tree_correct).count();
         let rate = statistics::rate(right, eligible.count());
-        println!("tree right among eligible draws: {}", line(&rate, &format!("{right} of {}:", rate.n)));
+        say(format!("tree right among eligible draws: {}", line(&rate, &format!("{right} of {}:", rate.n))))?;
     }
+    Ok(())
 }
 
 fn line(estimate: &statistics::Estimate, what: &str) -> String {
@@ -383,12 +395,20 @@ fn line(estimate: &statistics::Estimate, what: &str) -> String {
 }
 
 fn run_reproduce(run: &Run) -> Result<ExitCode> {
+    let Settings { agent, skin, experiment, .. } = run.settings;
+    let (sensors, largest) = (Agent::new(agent, skin).sites.len(), experiment.dimensions.last());
+    ensure!(
+        largest.is_some_and(|&largest| largest < sensors),
+        "setting `experiment.dimensions` goes up to {}, but {sensors} sensors span fewer",
+        largest.map_or(0, |largest| *largest)
+    );
+    prepare_folder(run.out)?;
     let judged = reproduce::experiment_1(run)?;
-    println!("{}\n", reproduce::preamble(run));
-    println!("{}\n", claims::terminal_table(&judged));
-    println!("All files are in {}; claims.md says where each value was found.", run.out.display());
+    say(format!("{}\n", reproduce::preamble(run)))?;
+    say(format!("{}\n", claims::terminal_table(&judged)))?;
+    say(format!("All files are in {}; claims.md says where each value was found.", run.out.display()))?;
     for line in judged.iter().filter_map(claims::comparison) {
-        println!("{line}");
+        say(line)?;
     }
     let all = judged.iter().all(|judged| judged.verdict == Verdict::Reproduced);
     Ok(ExitCode::from(u8::from(!all)))

@@ -49,30 +49,27 @@ pub fn information_metric(symbols: &Symbols) -> Distances {
         .step_by(TILE)
         .flat_map(|row| (row..sensors).step_by(TILE).map(move |column| (row, column)))
         .collect();
-    let tiled: Vec<Vec<(usize, usize, f64)>> = tiles
+    let pairs = |&(row, column): &(usize, usize)| {
+        let rows = row..(row + TILE).min(sensors);
+        rows.flat_map(move |i| (column.max(i + 1)..(column + TILE).min(sensors)).map(move |j| (i, j)))
+    };
+    let tiled: Vec<Vec<f64>> = tiles
         .par_iter()
-        .map(|&(row, column)| {
+        .map(|tile| {
             let mut joint = vec![0; levels * levels];
-            let mut found = Vec::with_capacity(TILE * TILE);
-            for i in row..(row + TILE).min(sensors) {
-                for j in column.max(i + 1)..(column + TILE).min(sensors) {
-                    match &planes {
-                        Some(planes) => planes.count(i, j, &marginals, &mut joint),
-                        None => count(symbols, i, j, &mut joint),
-                    }
-                    found.push((
-                        i,
-                        j,
-                        metric_of_counts(&joint, &marginals[i], &marginals[j], symbols.samples),
-                    ));
+            let metric = |(i, j)| {
+                match &planes {
+                    Some(planes) => planes.count(i, j, &marginals, &mut joint),
+                    None => count(symbols, i, j, &mut joint),
                 }
-            }
-            found
+                metric_of_counts(&joint, &marginals[i], &marginals[j], symbols.samples)
+            };
+            pairs(tile).map(metric).collect()
         })
         .collect();
 
     let mut values = vec![0.0; sensors * sensors];
-    for (i, j, distance) in tiled.into_iter().flatten() {
+    for ((i, j), distance) in tiles.iter().flat_map(pairs).zip(tiled.into_iter().flatten()) {
         values[i * sensors + j] = distance;
         values[j * sensors + i] = distance;
     }

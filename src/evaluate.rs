@@ -16,7 +16,7 @@ pub struct Truth {
 }
 
 impl Truth {
-    /// Number of parts.
+    /// Number of parts. One of a single sensor counts, although no estimate can have it.
     pub fn parts(&self) -> usize {
         sizes(&self.labels).len()
     }

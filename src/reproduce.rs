@@ -46,6 +46,14 @@ pub fn experiment_1(run: &Run) -> Result<Vec<Judged>, ReproduceError> {
     let Run { settings, out, quick, .. } = *run;
     let mut outputs = Vec::new();
     let mut records: Vec<Record> = Vec::new();
+    // What an earlier run found must not stand beside what this one is about to write.
+    for name in ["claims.csv", "claims.md", "manifest.json"] {
+        let path = out.join(name);
+        if path.exists() {
+            std::fs::remove_file(&path)
+                .map_err(|error| FileError::new(&path, format!("cannot be replaced: {error}")))?;
+        }
+    }
     let (mut mapping, mut inferring) = (Duration::ZERO, Duration::ZERO);
     let mut bodies = Vec::new();
 
@@ -140,9 +148,15 @@ pub fn experiment_1(run: &Run) -> Result<Vec<Judged>, ReproduceError> {
 pub fn preamble(run: &Run) -> String {
     let Settings { motion, schema, experiment, .. } = run.settings;
     let caution = if run.quick { " Quick run: its numbers are no replication." } else { "" };
+    let scope = match experiment.simulations {
+        1 => "Intervals are over the chains of this one simulation; another can differ by more.",
+        _ => {
+            "Intervals pool the chains of all simulations, which differ more than chains do: they are too narrow."
+        }
+    };
     format!(
         "Experiment 1: p = {}, {} simulation(s), {} chains of {} sweeps for each dimension and model, seed {}, \
-         revision {}.{caution}",
+         revision {}.{caution} {scope}",
         motion.coordination,
         experiment.simulations,
         schema.chains,

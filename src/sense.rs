@@ -71,7 +71,7 @@ mod tests {
         let identity = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
         let before = Pose { position: [0.3, -0.2, 0.1], rotation: identity };
         let poses = [[before; 5], [now; 5]].concat();
-        let trajectory = Trajectory { parts: 5, joints: 4, poses, angles: vec![], locked: vec![] };
+        let trajectory = Trajectory { parts: 5, joints: 4, poses, angles: vec![] };
         let tactile = sense(&agent, &trajectory, &settings.sense);
         (agent, tactile)
     }

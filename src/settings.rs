@@ -220,12 +220,12 @@ pub struct Experiment {
 #[derive(Debug, thiserror::Error)]
 pub enum SettingsError {
     /// The file cannot be read.
-    #[error("{}: cannot read the settings: {source}", path.display())]
+    #[error("{}: cannot read the settings: {reason}", path.display())]
     Unreadable {
         /// The file.
         path: PathBuf,
         /// Why.
-        source: std::io::Error,
+        reason: std::io::Error,
     },
     /// The file is no TOML, or a value has the wrong type.
     #[error("{origin}: {message}")]
@@ -273,7 +273,7 @@ impl Settings {
         }
         if let Some(path) = file {
             let text = std::fs::read_to_string(path)
-                .map_err(|source| SettingsError::Unreadable { path: path.to_owned(), source })?;
+                .map_err(|reason| SettingsError::Unreadable { path: path.to_owned(), reason })?;
             origin = path.display().to_string();
             overlay(&mut table, parse(&text, &origin)?, "", &origin)?;
         }
@@ -293,14 +293,16 @@ impl Settings {
         let positive = |key, value: f64| {
             check(key, value, value.is_finite() && value > 0.0, "a positive, finite number")
         };
-        let not_negative =
-            |key, value: f64| check(key, value, value.is_finite() && value >= 0.0, "0 or a positive number");
+        // Far beyond any body, and far within what the physics engine computes without overflow.
+        let physical =
+            |key, value: f64| check(key, value, (1e-6..=1e6).contains(&value), "0.000001 to 1000000");
+        let gain = |key, value: f64| check(key, value, (0.0..=1e6).contains(&value), "0 to 1000000");
         let count = |key, value: usize| check(key, value, value >= 1, "at least 1");
 
-        positive("agent.part_length", self.agent.part_length)?;
-        positive("agent.part_radius", self.agent.part_radius)?;
-        not_negative("agent.gap", self.agent.gap)?;
-        positive("agent.density", self.agent.density)?;
+        physical("agent.part_length", self.agent.part_length)?;
+        physical("agent.part_radius", self.agent.part_radius)?;
+        gain("agent.gap", self.agent.gap)?;
+        physical("agent.density", self.agent.density)?;
 
         count("skin.around", self.skin.around)?;
         count("skin.along", self.skin.along)?;
@@ -311,23 +313,24 @@ impl Settings {
         let p = self.motion.coordination;
         check("motion.coordination", p, (0.0..=1.0).contains(&p), "a probability, 0 to 1")?;
         count("motion.epoch", self.motion.epoch)?;
-        not_negative("motion.stiffness", self.motion.stiffness)?;
-        not_negative("motion.damping", self.motion.damping)?;
-        positive("motion.lock_torque", self.motion.lock_torque)?;
+        gain("motion.stiffness", self.motion.stiffness)?;
+        gain("motion.damping", self.motion.damping)?;
+        physical("motion.lock_torque", self.motion.lock_torque)?;
 
-        positive("physics.step", self.physics.step)?;
+        physical("physics.step", self.physics.step)?;
         positive("physics.duration", self.physics.duration)?;
         positive("sense.interval", self.sense.interval)?;
-        positive("sense.fluid_density", self.sense.fluid_density)?;
+        physical("sense.fluid_density", self.sense.fluid_density)?;
         let ratio = self.sense.interval / self.physics.step;
         let whole = ratio >= 0.5 && (ratio - ratio.round()).abs() < 1e-6 * ratio;
         check("sense.interval", self.sense.interval, whole, "a whole number of physics.step")?;
+        // Before anything is allocated: 2 billion pressures are 8 GB, 20 million samples 13 GB of poses.
         let samples = self.physics.duration / self.sense.interval;
         check(
             "physics.duration",
             self.physics.duration,
-            (1.0 - 1e-9..=1e8).contains(&samples),
-            "at least one and at most 100 million times sense.interval",
+            (1.0 - 1e-9..=2e7).contains(&samples) && samples * (5 * sensors) as f64 <= 2e9,
+            "at least sense.interval, with at most 20 million samples and 2 billion pressures in all",
         )?;
 
         let levels = self.quantise.levels;
@@ -335,13 +338,13 @@ impl Settings {
 
         let schema = &self.schema;
         check("schema.components", schema.components, (1..=1000).contains(&schema.components), "1 to 1000")?;
-        positive("schema.concentration", schema.concentration)?;
-        positive("schema.mean_weight", schema.mean_weight)?;
+        physical("schema.concentration", schema.concentration)?;
+        physical("schema.mean_weight", schema.mean_weight)?;
         let freedom = schema.extra_freedom;
-        check("schema.extra_freedom", freedom, freedom.is_finite() && freedom > -1.0, "above -1")?;
-        positive("schema.scale", schema.scale)?;
+        check("schema.extra_freedom", freedom, (-0.99..=1e6).contains(&freedom), "-0.99 to 1000000")?;
+        physical("schema.scale", schema.scale)?;
         count("schema.sweeps", schema.sweeps)?;
-        count("schema.chains", schema.chains)?;
+        check("schema.chains", schema.chains, (1..=1_000_000).contains(&schema.chains), "1 to 1000000")?;
         if schema.keep == Keep::All {
             check("schema.burn_in", schema.burn_in, schema.burn_in < schema.sweeps, "below schema.sweeps")?;
         }
@@ -400,7 +403,7 @@ fn parse(text: &str, origin: &str) -> Result<Table, SettingsError> {
 /// Lays `over` on `base`, key by key; `section` and `origin` are for the message.
 fn overlay(base: &mut Table, over: Table, section: &str, origin: &str) -> Result<(), SettingsError> {
     for (name, value) in over {
-        let key = format!("{section}{name}");
+        let key = format!("{section}{}", name.escape_debug());
         match (base.get_mut(&name), value) {
             (Some(Value::Table(base)), Value::Table(over)) => {
                 overlay(base, over, &format!("{key}."), origin)?
@@ -411,7 +414,11 @@ fn overlay(base: &mut Table, over: Table, section: &str, origin: &str) -> Result
             (Some(slot), value) => {
                 return Err(SettingsError::Malformed {
                     origin: origin.to_owned(),
-                    message: format!("`{key}` is a {}, but must be a {}", value.type_str(), slot.type_str()),
+                    message: format!(
+                        "`{key}` has type {}, but must have type {}",
+                        value.type_str(),
+                        slot.type_str()
+                    ),
                 });
             }
             (None, _) => return Err(SettingsError::Unknown { origin: origin.to_owned(), key }),
@@ -454,12 +461,14 @@ mod tests {
         for (text, expected) in [
             ("[motion]\nspeed = 3", "unknown setting `motion.speed`"),
             ("[moton]\nepoch = 3", "unknown setting `moton`"),
-            ("[motion]\nepoch = \"long\"", "`motion.epoch` is a string, but must be a integer"),
+            ("[motion]\nepoch = \"long\"", "`motion.epoch` has type string, but must have type integer"),
             ("[motion]\nepoch = -3", "motion.epoch"),
             ("[motion\nepoch = 3", "line 1:"),
             ("[schema]\ncomponents = 0", "`schema.components` is 0, but must be 1 to 1000"),
             ("[schema]\nedge_weight = \"prim\"", "unknown variant `prim`"),
             ("[physics]\nstep = nan", "`physics.step` is NaN"),
+            ("[agent]\ndensity = 1e-320", "agent.density"),
+            ("[physics]\nduration = 1e9", "`physics.duration` is 1000000000"),
             ("[physics]\nstep = 0.03", "a whole number of physics.step"),
             ("[skin]\ncaps = 3", "even"),
             ("[experiment]\ndimensions = []", "experiment.dimensions"),

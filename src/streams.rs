@@ -1,7 +1,7 @@
 //! (master seed, simulation, stage, chain) → an independent stream of random numbers.
 //!
 //! A stream depends on nothing else, so neither the number of threads nor the order of work changes a
-//! result, and a single stage run by hand repeats what the whole experiment did.
+//! result, and a stage run by hand repeats what an experiment did in its first simulation.
 
 use rand::SeedableRng;
 use rand::rngs::Xoshiro256PlusPlus;

@@ -203,6 +203,16 @@ fn symbols_are_taken_as_they_are_and_constant_sensors_reported() {
 }
 
 #[test]
+fn symbols_that_are_all_the_same_are_no_distance() {
+    let folder = tempfile::tempdir().unwrap();
+    let tactile = bodyschema::sense::Tactile { samples: 3, pressures: vec![0.0; 6] };
+    npy::write_tactile(&folder.path().join("zero.npy"), &tactile).unwrap();
+    assert!(bodyschema(folder.path(), "distance zero.npy --symbols --out distance.npy").status.success());
+    let distances = npy::read_distances(&folder.path().join("distance.npy")).unwrap();
+    assert_eq!(distances.values, [0.0; 4]);
+}
+
+#[test]
 fn a_mistake_is_one_line_that_says_what_and_where_and_status_2() {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name);
@@ -215,6 +225,12 @@ fn a_mistake_is_one_line_that_says_what_and_where_and_status_2() {
     npy::write_body_map(&at("wide.npy"), &BodyMap { dims: 3, coordinates: vec![1.0; 6] }).unwrap();
     npy::write_body_map(&at("flat.npy"), &BodyMap { dims: 2, coordinates: vec![1., 5., 2., 5., 4., 5.] })
         .unwrap();
+    let wide = bodyschema::sense::Tactile { samples: 1, pressures: vec![1.0; 20_001] };
+    npy::write_tactile(&at("transposed.npy"), &wide).unwrap();
+    let same = Distances { sensors: 2, values: vec![0.0; 4] };
+    npy::write_distances(&at("same.npy"), &same).unwrap();
+    let tiny = BodyMap { dims: 1, coordinates: vec![1e-160, 2e-160, 4e-160] };
+    npy::write_body_map(&at("tiny.npy"), &tiny).unwrap();
     npy::write_body_map(&at("nan.npy"), &BodyMap { dims: 1, coordinates: vec![1.0, f64::NAN] }).unwrap();
     fs::write(at("text.npy"), "hello").unwrap();
     fs::write(at("unknown.toml"), "[motion]\nspeed = 1").unwrap();
@@ -222,6 +238,9 @@ fn a_mistake_is_one_line_that_says_what_and_where_and_status_2() {
     fs::write(at("zero.toml"), "[schema]\ncomponents = 0").unwrap();
     fs::write(at("wild.toml"), "[motion]\ncoordination = 0.0\nstiffness = 1e6\n[physics]\nduration = 60.0")
         .unwrap();
+    fs::write(at("heavy.toml"), "[agent]\ndensity = 1e300").unwrap();
+    fs::write(at("long.toml"), "[physics]\nduration = 1e7").unwrap();
+    fs::write(at("deep.toml"), "[experiment]\ndimensions = [2, 900]").unwrap();
     fs::write(at("short.csv"), "sensor,part\n0,0\n").unwrap();
     fs::write(at("file"), "").unwrap();
 
@@ -252,6 +271,19 @@ fn a_mistake_is_one_line_that_says_what_and_where_and_status_2() {
         ("simulate --settings unknown.toml --out s", "unknown.toml: unknown setting `motion.speed`"),
         ("simulate --settings broken.toml --out s", "broken.toml: line 1"),
         ("simulate --settings wild.toml --out s", "lower motion.stiffness"),
+        ("simulate --settings heavy.toml --out s", "`agent.density` is 1000"),
+        ("simulate --settings long.toml --out s", "at most 20 million samples"),
+        ("simulate --out file/s", "file/s: cannot be written to"),
+        ("distance transposed.npy --out d.npy", "is it transposed?"),
+        ("distance transposed.npy --symbols --out d.npy", "is it transposed?"),
+        ("map same.npy --dims 1 --out m.npy", "all at distance 0"),
+        (
+            "map line.npy --dims 1 --out /dev/null",
+            "/dev/null: cannot be written: it exists and is no regular file",
+        ),
+        ("infer tiny.npy --out s", "tiny.npy: the points spread over 1.5"),
+        ("infer clusters.npy --chains 1000000000000 --out s", "`schema.chains`"),
+        ("reproduce exp1 --settings deep.toml --out s", "but 840 sensors span fewer"),
         ("reproduce exp1 --jobs 0 --out s", "--jobs is 0"),
         ("reproduce exp1 --simulations 0 --out s", "`experiment.simulations` is 0"),
     ] {

@@ -133,9 +133,6 @@ pub type dAllocateODEDataFlags = ::std::os::raw::c_int;
 unsafe extern "C" {
     pub fn dAllocateODEDataForThread(uiAllocateFlags: ::std::os::raw::c_uint) -> ::std::os::raw::c_int;
 }
-unsafe extern "C" {
-    pub fn dCloseODE();
-}
 #[repr(C)]
 #[derive(Debug)]
 pub struct dxThreadingImplementation {
@@ -338,16 +335,7 @@ unsafe extern "C" {
     pub fn dWorldDestroy(world: dWorldID);
 }
 unsafe extern "C" {
-    pub fn dWorldGetGravity(arg1: dWorldID, gravity: *mut dReal);
-}
-unsafe extern "C" {
-    pub fn dWorldGetERP(arg1: dWorldID) -> dReal;
-}
-unsafe extern "C" {
     pub fn dWorldSetCFM(arg1: dWorldID, cfm: dReal);
-}
-unsafe extern "C" {
-    pub fn dWorldGetCFM(arg1: dWorldID) -> dReal;
 }
 unsafe extern "C" {
     pub fn dWorldSetStepThreadingImplementation(
@@ -355,18 +343,6 @@ unsafe extern "C" {
         functions_info: *const dThreadingFunctionsInfo,
         threading_impl: dThreadingImplementationID,
     );
-}
-unsafe extern "C" {
-    pub fn dWorldStep(w: dWorldID, stepsize: dReal) -> ::std::os::raw::c_int;
-}
-unsafe extern "C" {
-    pub fn dWorldGetAutoDisableFlag(arg1: dWorldID) -> ::std::os::raw::c_int;
-}
-unsafe extern "C" {
-    pub fn dWorldGetLinearDamping(w: dWorldID) -> dReal;
-}
-unsafe extern "C" {
-    pub fn dWorldGetAngularDamping(w: dWorldID) -> dReal;
 }
 unsafe extern "C" {
     pub fn dBodyCreate(arg1: dWorldID) -> dBodyID;
@@ -393,13 +369,7 @@ unsafe extern "C" {
     pub fn dBodySetMass(arg1: dBodyID, mass: *const dMass);
 }
 unsafe extern "C" {
-    pub fn dBodyGetMass(arg1: dBodyID, mass: *mut dMass);
-}
-unsafe extern "C" {
     pub fn dBodyAddForce(arg1: dBodyID, fx: dReal, fy: dReal, fz: dReal);
-}
-unsafe extern "C" {
-    pub fn dBodyGetGyroscopicMode(b: dBodyID) -> ::std::os::raw::c_int;
 }
 unsafe extern "C" {
     pub fn dJointCreateUniversal(arg1: dWorldID, arg2: dJointGroupID) -> dJointID;
@@ -459,6 +429,9 @@ unsafe extern "C" {
 }
 unsafe extern "C" {
     pub fn ode_shim_install_handlers();
+}
+unsafe extern "C" {
+    pub fn ode_shim_world_step(world: dWorldID, step: dReal) -> ::std::os::raw::c_int;
 }
 unsafe extern "C" {
     pub fn ode_shim_take_message(buffer: *mut ::std::os::raw::c_char, size: usize) -> usize;

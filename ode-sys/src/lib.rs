@@ -1,5 +1,5 @@
 //! Raw bindings to the system's Open Dynamics Engine, double precision: only the functions that a body
-//! of cylinders and universal joints needs. No logic lives here; see ODE's manual for each call.
+//! of cylinders and universal joints and its tests need. No logic lives here; see ODE's manual for each call.
 //!
 //! `src/bindings.rs` is bindgen's output for Debian's `libode-dev`, committed so that a build needs no
 //! libclang; the feature `bindgen` regenerates it from the installed header.

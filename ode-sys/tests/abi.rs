@@ -72,3 +72,27 @@ fn a_message_from_ode_reaches_the_shim() {
         assert_eq!(ode_shim_take_message(buffer.as_mut_ptr(), buffer.len() as _), 0, "taken once");
     }
 }
+
+#[test]
+fn a_fatal_error_within_a_step_is_returned() {
+    initialise();
+    // SAFETY: the handles are live; after the failed step the world is left alone, as the shim asks.
+    unsafe {
+        ode_shim_install_handlers();
+        let world = dWorldCreate();
+        let threading = dThreadingAllocateSelfThreadedImplementation();
+        let functions = dThreadingImplementationGetFunctions(threading);
+        dWorldSetStepThreadingImplementation(world, functions, threading);
+        let body = dBodyCreate(world);
+        assert_eq!(ode_shim_world_step(world, 0.01), 0);
+        dBodyAddForce(body, f64::NAN, 0.0, 0.0);
+        dBodySetPosition(body, f64::NAN, 0.0, 0.0);
+        let failed = (0..3).any(|_| {
+            dBodyAddForce(body, f64::NAN, f64::NAN, f64::NAN);
+            ode_shim_world_step(world, f64::NAN) == 1
+        });
+        assert!(failed);
+        let mut buffer = [0; 256];
+        assert!(ode_shim_take_message(buffer.as_mut_ptr(), buffer.len() as _) > 0);
+    }
+}

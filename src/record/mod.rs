@@ -35,21 +35,38 @@ pub fn write_whole(
     path: &Path,
     write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
 ) -> Result<(), FileError> {
-    let aside = path.with_added_extension("partial");
+    // A link keeps pointing where it does; a device or pipe is not replaced.
+    let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+    if target.exists() && !target.is_file() {
+        return Err(FileError::new(path, "cannot be written: it exists and is no regular file"));
+    }
+    let aside = target.with_added_extension("partial");
     let attempt = || -> io::Result<()> {
-        if let Some(folder) = path.parent() {
+        if let Some(folder) = target.parent() {
             fs::create_dir_all(folder)?;
         }
         let mut writer = BufWriter::with_capacity(1 << 20, File::create(&aside)?);
         write(&mut writer)?;
         writer.into_inner().map_err(io::IntoInnerError::into_error)?.sync_all()?;
-        fs::rename(&aside, path)
+        fs::rename(&aside, &target)
     };
     attempt().map_err(|error| {
         // Nothing is lost if it cannot be removed; the error that counts is the first.
         let _ = fs::remove_file(&aside);
         FileError::new(path, format!("cannot be written: {error}"))
     })
+}
+
+/// Makes sure, before any work is done for it, that a folder is there and can be written to.
+///
+/// # Errors
+/// If it cannot.
+pub fn prepare_folder(path: &Path) -> Result<(), FileError> {
+    let probe = path.join(".bodyschema.partial");
+    fs::create_dir_all(path)
+        .and_then(|()| File::create(&probe))
+        .and_then(|_| fs::remove_file(&probe))
+        .map_err(|error| FileError::new(path, format!("cannot be written to: {error}")))
 }
 
 /// [`write_whole`] for text.

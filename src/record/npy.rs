@@ -51,7 +51,7 @@ fn write<T: npyz::AutoSerialize>(
     })
 }
 
-/// Reads pressures, T × M, of any real type; each must be finite and not negative.
+/// Reads pressures, T × M, of float32, float64 or any integer type; each must be finite and not negative.
 pub fn read_tactile(path: &Path) -> Result<Tactile, FileError> {
     let matrix = Matrix::read(path, Order::Fortran, |value| match value {
         value if !value.is_finite() => Err("a pressure must be a finite number"),
@@ -59,7 +59,24 @@ pub fn read_tactile(path: &Path) -> Result<Tactile, FileError> {
         value if value > f64::from(f32::MAX) => Err("a pressure must be in the range of float32"),
         value => Ok(value as f32),
     })?;
+    check_sensors(path, &matrix)?;
     Ok(Tactile { samples: matrix.rows, pressures: matrix.values })
+}
+
+/// Most sensors whose distances are computed: a matrix of 3.2 GB.
+const MOST_SENSORS: usize = 20_000;
+
+/// A matrix by sensors and times, in place of times and sensors, asks for distances beyond any memory.
+fn check_sensors<T>(path: &Path, matrix: &Matrix<T>) -> Result<(), FileError> {
+    if matrix.columns <= MOST_SENSORS {
+        return Ok(());
+    }
+    let message = format!(
+        "has {} rows and {} columns; a row is a time and a column a sensor, of which there may be {MOST_SENSORS}: \
+         is it transposed?",
+        matrix.rows, matrix.columns
+    );
+    Err(FileError::new(path, message))
 }
 
 /// Reads symbols, T × M, of any type with whole values from 0 to 255.
@@ -72,7 +89,9 @@ pub fn read_symbols(path: &Path) -> Result<Symbols, FileError> {
             Err("a symbol must be a whole number from 0 to 255")
         }
     })?;
-    let levels = 1 + matrix.values.iter().copied().max().map_or(0, usize::from);
+    check_sensors(path, &matrix)?;
+    // Two at least: a single symbol is one that never changes.
+    let levels = 2.max(1 + matrix.values.iter().copied().max().map_or(0, usize::from));
     Ok(Symbols { samples: matrix.rows, levels, values: matrix.values })
 }
 
@@ -122,7 +141,7 @@ struct Matrix<T> {
 }
 
 impl<T: Copy> Matrix<T> {
-    /// Reads a matrix of any real type into the order that is asked for, each value checked by `convert`.
+    /// Reads a matrix of float32, float64 or any integer type into the order that is asked for, each value checked by `convert`.
     fn read(
         path: &Path,
         wanted: Order,
@@ -130,7 +149,10 @@ impl<T: Copy> Matrix<T> {
     ) -> Result<Self, FileError> {
         let broken = |error: io::Error| match error.kind() {
             io::ErrorKind::NotFound => FileError::new(path, "no such file"),
-            _ => FileError::new(path, format!("cannot be read as a .npy file: {error}")),
+            _ => {
+                let reason = error.to_string().split_whitespace().collect::<Vec<_>>().join(" ");
+                FileError::new(path, format!("cannot be read as a .npy file: {reason}"))
+            }
         };
         let file = File::open(path).map_err(broken)?;
         let bytes = file.metadata().map_err(broken)?.len();
@@ -144,8 +166,12 @@ impl<T: Copy> Matrix<T> {
             return Err(FileError::new(path, format!("is empty: its shape is {rows} x {columns}")));
         }
         let dtype = npy.dtype();
-        let unusable =
-            || FileError::new(path, format!("must hold real numbers, but its dtype is {}", dtype.descr()));
+        let unusable = || {
+            FileError::new(
+                path,
+                format!("must hold float32, float64 or integers, but its dtype is {}", dtype.descr()),
+            )
+        };
         let DType::Plain(kind) = &dtype else { return Err(unusable()) };
         let width = kind.num_bytes().ok_or_else(unusable)? as u64;
         // Before anything is allocated: a header can promise any size.

@@ -5,7 +5,7 @@
 //! Formulas: Murphy (2007), "Conjugate Bayesian analysis of the Gaussian distribution", section 9. The
 //! paper leaves the hyperparameters open; ours are Fraley & Raftery's (2007), as in mclust.
 
-use std::f64::consts::{LN_2, PI};
+use std::f64::consts::PI;
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use rand::{Rng, RngExt};
@@ -88,6 +88,9 @@ pub struct NormalInverseWishart {
 /// A prior that cannot be made.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum PriorError {
+    /// Numbers so large or small that their products are none.
+    #[error("the points spread over {0:e}, which is beyond what can be computed with; rescale them")]
+    Scale(f64),
     /// The points span fewer than d dimensions.
     #[error(
         "the {points} points span fewer than {dims} dimensions, so the prior has no scale there; use fewer dimensions"
@@ -118,6 +121,10 @@ impl NormalInverseWishart {
         let covariance = points.covariance();
         // A relative bound: the Cholesky factorisation alone would let rounding pass for spread.
         let spread = covariance.diagonal().max();
+        let deviation = spread.sqrt();
+        if spread > 0.0 && !(1e-50..=1e50).contains(&deviation) {
+            return Err(PriorError::Scale(deviation));
+        }
         let flat = !covariance
             .clone()
             .cholesky()
@@ -183,8 +190,9 @@ impl NormalInverseWishart {
         0.5 * self.freedom * log_det - log_gamma
     }
 
-    /// log NIW(μ, Σ): the density of a draw with respect to (μ, Λ), up to no constant.
-    pub fn log_density(&self, gaussian: &Gaussian) -> f64 {
+    /// log NIW(μ, Σ), by which the tests check Bayes' rule: the density of a draw with respect to (μ, Λ), up to no constant.
+    #[cfg(test)]
+    fn log_density(&self, gaussian: &Gaussian) -> f64 {
         let dims = self.mean.len() as f64;
         let log_det_precision = 2.0 * (gaussian.log_peak + 0.5 * dims * (2.0 * PI).ln());
         let precision = gaussian.precision();
@@ -193,7 +201,7 @@ impl NormalInverseWishart {
         let offset = &gaussian.mean - &self.mean;
         let wishart = self.log_mass() + 0.5 * (self.freedom - dims - 1.0) * log_det_precision
             - 0.5 * trace
-            - 0.5 * self.freedom * dims * LN_2
+            - 0.5 * self.freedom * dims * std::f64::consts::LN_2
             - 0.25 * dims * (dims - 1.0) * PI.ln();
         let normal = 0.5 * dims * (self.mean_weight / (2.0 * PI)).ln() + 0.5 * log_det_precision
             - 0.5 * self.mean_weight * offset.dot(&(&precision * &offset));

@@ -22,8 +22,6 @@ pub struct Trajectory {
     pub poses: Vec<Pose>,
     /// (T + 1) × joints, by time: both angles of each joint, rad in [−π, π].
     pub angles: Vec<[f64; 2]>,
-    /// Whether each joint is locked, for every epoch: epochs × joints, by time.
-    pub locked: Vec<bool>,
 }
 
 impl Trajectory {
@@ -52,7 +50,6 @@ pub fn simulate(
         joints,
         poses: Vec::with_capacity((samples + 1) * parts),
         angles: Vec::with_capacity((samples + 1) * joints),
-        locked: vec![true; joints],
     };
     for step in 0..=samples * steps_per_sample {
         if step % steps_per_sample == 0 {
@@ -65,7 +62,6 @@ pub fn simulate(
         }
         if step > 0 && step % settings.motion.epoch == 0 {
             motor.draw(&mut world, &settings.motion, rng);
-            trajectory.locked.extend((0..joints).map(|joint| motor.is_locked(joint)));
         }
         motor.apply(&mut world, &settings.motion);
         world.step()?;
@@ -104,7 +100,7 @@ mod tests {
     }
 
     #[test]
-    fn a_joint_follows_its_target() {
+    fn moving_joints_come_to_rest_under_the_controller() {
         // Well damped and with time to settle, every axis that moves must come to rest somewhere: its
         // angle no longer changes at the end of the epoch. The opposite sign of torque would never settle.
         let trajectory = run(|settings| {

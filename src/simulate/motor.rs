@@ -54,7 +54,8 @@ impl Motor {
         }
     }
 
-    /// Whether a joint is locked in this epoch.
+    /// Whether a joint is locked in this epoch, for the tests' statistics.
+    #[cfg(test)]
     pub fn is_locked(&self, joint: usize) -> bool {
         self.targets[joint].is_none()
     }

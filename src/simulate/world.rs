@@ -26,16 +26,12 @@ pub struct Pose {
 /// A body whose motion cannot be followed with the present settings.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error(
-    "part {part} reached {speed:.3e} {unit} at step {step} (t = {time:.3} s): the simulation has become \
-     unstable; lower motion.stiffness, motion.damping or physics.step, or enlarge agent.part_radius"
+    "{event} at step {step} (t = {time:.3} s): the simulation has become unstable; lower motion.stiffness, \
+     motion.damping or physics.step, or enlarge agent.part_radius"
 )]
 pub struct Unstable {
-    /// Index of the part.
-    pub part: usize,
-    /// Its linear or angular speed.
-    pub speed: f64,
-    /// Unit of `speed`.
-    pub unit: &'static str,
+    /// What was seen.
+    pub event: String,
     /// Physics steps taken.
     pub step: u64,
     /// Simulated time, s.
@@ -51,6 +47,8 @@ pub struct World {
     step: f64,
     steps: u64,
     lock_torque: f64,
+    /// Whether the engine gave up in a step, after which the world may not be touched.
+    failed: bool,
 }
 
 /// Version (as built against), and configuration tokens (as linked) of ODE.
@@ -77,6 +75,14 @@ fn initialise() {
     });
     let allocated = unsafe { ode::dAllocateODEDataForThread(ode::dAllocateMaskAll as u32) };
     assert_ne!(allocated, 0, "ODE cannot allocate its data for this thread");
+}
+
+/// What ODE last said in this thread.
+fn last_message() -> String {
+    let mut buffer = [0_u8; 512];
+    // SAFETY: the shim writes at most as many bytes as it is told, and terminates them.
+    let length = unsafe { ode::ode_shim_take_message(buffer.as_mut_ptr().cast(), buffer.len() as _) };
+    String::from_utf8_lossy(&buffer[..length as usize]).into_owned()
 }
 
 impl World {
@@ -143,6 +149,7 @@ impl World {
                 step: settings.physics.step,
                 steps: 0,
                 lock_torque: settings.motion.lock_torque,
+                failed: false,
             };
             for joint in 0..world.joints.len() {
                 world.lock(joint);
@@ -154,11 +161,18 @@ impl World {
     /// Advances the world by one step.
     ///
     /// # Errors
-    /// [`Unstable`] if a part turns by more than half a turn in a step, or leaves the range of numbers.
+    /// [`Unstable`] if a part turns by more than half a turn in a step, leaves the range of numbers, or makes
+    /// the engine give up. The world is then of no more use.
     pub fn step(&mut self) -> Result<(), Unstable> {
-        // SAFETY: the world is live, its step positive, and its state was found finite after the last one.
-        unsafe { ode::dWorldStep(self.world, self.step) };
         self.steps += 1;
+        let unstable =
+            |event: String| Unstable { event, step: self.steps, time: self.steps as f64 * self.step };
+        // SAFETY: the world is live and has not failed before, its step is positive, and its state was
+        // found finite after the last one.
+        if unsafe { ode::ode_shim_world_step(self.world, self.step) } != 0 {
+            self.failed = true;
+            return Err(unstable(format!("the physics engine gave up ({})", last_message())));
+        }
         for part in 0..self.bodies.len() {
             let (linear, angular) = self.velocity(part);
             let speed = |v: Vector3| v.iter().map(|x| x * x).sum::<f64>().sqrt();
@@ -168,8 +182,7 @@ impl World {
                 [(speed(angular), std::f64::consts::PI / self.step, "rad/s"), (speed(linear), 1e3, "m/s")]
             {
                 if !speed.is_finite() || speed >= limit {
-                    let (step, time) = (self.steps, self.steps as f64 * self.step);
-                    return Err(Unstable { part, speed, unit, step, time });
+                    return Err(unstable(format!("part {part} reached {speed:.3e} {unit}")));
                 }
             }
         }
@@ -252,6 +265,9 @@ impl World {
 
 impl Drop for World {
     fn drop(&mut self) {
+        if self.failed {
+            return;
+        }
         // SAFETY: destroying the world destroys its bodies and joints; the threading outlives it.
         unsafe {
             ode::dWorldDestroy(self.world);
