@@ -1,19 +1,39 @@
-//! A replication of Mimura et al. (2017): from a simulated body to its schema, stage by stage.
+//! A replication of Mimura, Hagiwara, Taniguchi & Inamura, "Bayesian Body Schema Estimation using Tactile
+//! Information obtained through Coordinated Random Movements" (Advanced Robotics, 2017).
+//!
+//! An [`agent`] of five cylinders moves at random in Open Dynamics Engine ([`simulate`]). The pressure of
+//! the fluid on its sensors ([`sense`]) is turned into symbols ([`quantise`]); how much the symbols of two
+//! sensors tell of each other is their [`distance`], and the distances place all sensors on a [`body_map`].
+//! A mixture with latent joints finds parts and their tree on it, the body [`schema`], and the truth says
+//! how well ([`evaluate`]). [`pipeline`] composes these stages; [`reproduce`] runs an experiment of them,
+//! from which [`figures`] and [`claims`] are made. All [`settings`] stand in `reproduce/paper.toml`, and
+//! [`record`] reads and writes every file.
 
 pub mod agent;
-pub mod body_map;
-pub mod claims;
-pub mod distance;
-pub mod evaluate;
-pub mod figures;
-pub mod pipeline;
-pub mod quantise;
-pub mod record;
-pub mod reproduce;
-pub mod schema;
-pub mod sense;
-pub mod settings;
 pub mod simulate;
+
+pub mod sense;
+
+pub mod quantise;
+
+pub mod distance;
+
+pub mod body_map;
+
+pub mod schema;
+
+pub mod evaluate;
+
+pub mod pipeline;
+
+pub mod reproduce;
+
+pub mod figures;
+
+pub mod claims;
+
+pub mod record;
+pub mod settings;
 pub mod statistics;
 pub mod streams;
 
