@@ -10,30 +10,19 @@
 //! [`record`] reads and writes every file.
 
 pub mod agent;
-pub mod simulate;
-
-pub mod sense;
-
-pub mod quantise;
-
-pub mod distance;
-
 pub mod body_map;
-
-pub mod schema;
-
-pub mod evaluate;
-
-pub mod pipeline;
-
-pub mod reproduce;
-
-pub mod figures;
-
 pub mod claims;
-
+pub mod distance;
+pub mod evaluate;
+pub mod figures;
+pub mod pipeline;
+pub mod quantise;
 pub mod record;
+pub mod reproduce;
+pub mod schema;
+pub mod sense;
 pub mod settings;
+pub mod simulate;
 pub mod statistics;
 pub mod streams;
 

@@ -100,6 +100,21 @@ mod tests {
     }
 
     #[test]
+    fn joints_are_locked_for_the_first_epoch_and_drawn_at_its_end() {
+        for (epoch, samples) in [(500, 50), (200, 20)] {
+            let trajectory = run(|settings| {
+                settings.motion.coordination = 0.0;
+                settings.motion.epoch = epoch;
+            })
+            .unwrap();
+            let angles: Vec<_> = trajectory.angles.chunks(trajectory.joints).collect();
+            let moved = |sample: usize| angles[sample].iter().flatten().any(|angle| angle.abs() > 1e-9);
+            assert!((0..=samples).all(|sample| !moved(sample)), "epoch {epoch}");
+            assert!(moved(samples + 1), "epoch {epoch}");
+        }
+    }
+
+    #[test]
     fn moving_joints_come_to_rest_under_the_controller() {
         // Well damped and with time to settle, every axis that moves must come to rest somewhere: its
         // angle no longer changes at the end of the epoch. The opposite sign of torque would never settle.

@@ -141,6 +141,7 @@ fn angular_momentum_drifts_less_with_a_shorter_step() {
         norm(angular_momentum(&world, &settings))
     };
     let drifts = [0.01, 0.005, 0.0025, 0.00125].map(&mut drift);
+    println!("angular momentum after 1 s, kg m²/s, at steps of 10, 5, 2.5 and 1.25 ms: {drifts:?}");
     assert!(drifts[0] > 1e-9, "there is a drift to see: {drifts:?}");
     // First order in the step: each halving should take away about half of it.
     assert!(drifts.windows(2).all(|pair| pair[1] < 0.7 * pair[0]), "{drifts:?}");
