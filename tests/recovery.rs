@@ -4,9 +4,9 @@
 #[path = "support/synthetic.rs"]
 mod synthetic;
 
-use bodyschema::evaluate::{Truth, score};
+use bodyschema::evaluate::{Truth, parts, score};
 use bodyschema::schema::{Model, infer};
-use bodyschema::settings::Settings;
+use bodyschema::settings::{EdgeWeight, Schema, Settings};
 use bodyschema::streams::stream;
 use indicatif::ProgressBar;
 
@@ -37,6 +37,35 @@ fn easy_trees_are_found() {
     let (right, eligible, all) = recovered(14, 3.0, |truth, _| truth);
     assert!(all >= 30, "enough bodies are identifiable: {all}");
     assert!(2 * eligible > all && right as f64 > 0.95 * eligible as f64, "{right} of {eligible} of {all}");
+}
+
+#[test]
+fn every_edge_weight_gives_a_tree_over_the_parts_and_the_collapsed_one_finds_it_too() {
+    let identifiable =
+        |at: &usize| synthetic::body(14, 3.0, &mut stream(1, 1, "synthetic", *at)).identifiable;
+    let at = (0..12).find(identifiable).expect("some body is identifiable");
+    let body = synthetic::body(14, 3.0, &mut stream(1, 1, "synthetic", at));
+    for edge_weight in [EdgeWeight::Literal, EdgeWeight::Pairwise, EdgeWeight::Collapsed] {
+        let schema = Schema { chains: 6, sweeps: 150, edge_weight, ..Settings::paper().schema };
+        let samples = infer(&body.map, Model::DpgmmLj, &schema, 1, 1, &ProgressBar::hidden()).unwrap();
+        let mut right = 0;
+        for sample in &samples {
+            assert_eq!(
+                sample.tree.len() + 1,
+                parts(&sample.labels),
+                "{edge_weight:?}: a tree over all parts"
+            );
+            let mut reached = vec![sample.tree[0].parent];
+            for edge in &sample.tree {
+                assert!(reached.contains(&edge.parent) && !reached.contains(&edge.child), "{edge_weight:?}");
+                reached.push(edge.child);
+            }
+            let score = score(sample, &body.truth, synthetic::ELIGIBLE_ARI);
+            right += usize::from(score.eligible && score.tree_correct);
+        }
+        // The literal weight is sticky: a child keeps its joint where its first parent was.
+        assert!(edge_weight == EdgeWeight::Literal || right >= 4, "{edge_weight:?}: {right} of 6");
+    }
 }
 
 #[test]

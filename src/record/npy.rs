@@ -271,12 +271,20 @@ mod tests {
     }
 
     #[test]
-    fn symbols_of_any_integer_type_are_read() {
+    fn symbols_of_any_type_are_read() {
         let folder = folder();
         let path = folder.path().join("symbols.npy");
-        write(&path, [2, 3], Order::C, [0_i64, 5, 2, 1, 0, 2].into_iter()).unwrap();
-        let symbols = read_symbols(&path).unwrap();
-        assert_eq!(symbols, Symbols { samples: 2, levels: 6, values: vec![0, 1, 5, 0, 2, 2] });
+        let expected = Symbols { samples: 2, levels: 6, values: vec![0, 1, 5, 0, 2, 2] };
+        macro_rules! check {
+            ($($kind:ty),*) => {$({
+                let values = [0, 5, 2, 1, 0, 2].map(|value: u8| value as $kind);
+                write(&path, [2, 3], Order::C, values.into_iter()).unwrap();
+                assert_eq!(read_symbols(&path).unwrap(), expected);
+            })*};
+        }
+        check!(i8, i16, i32, i64, u8, u16, u32, u64, f32, f64);
+        write(&path, [1, 1], Order::C, [-1_i8].into_iter()).unwrap();
+        assert!(read_symbols(&path).is_err());
     }
 
     #[test]
