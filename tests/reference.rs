@@ -109,6 +109,9 @@ fn information_metric_agrees_with_scikit_learn() {
             close(distances.get(i, j), *expected, 1e-9);
         }
     }
+    let pairs = (0..symbols.len()).flat_map(|i| (0..i).map(move |j| (i, j)));
+    let nats = pairs.filter(|&(i, j)| (distances.get(i, j) * 2_f64.ln() - metric[i][j]).abs() > 1e-3);
+    assert!(nats.count() > 40, "nats for bits would be seen");
     assert_eq!(distances.get(6, 7), 0.0, "another name for the same symbols is no distance");
 }
 
@@ -119,6 +122,9 @@ fn body_maps_agree_with_numpy_eigh() {
     let scaling = ClassicalScaling::new(&Distances { sensors, values: distances.concat() }).unwrap();
     scaling.eigenvalues.iter().zip(&eigenvalues).for_each(|(found, expected)| close(*found, *expected, 1e-8));
     close(scaling.negative_share(), negative_share, 1e-10);
+    let squared = distances.concat().iter().map(|d| d * d).collect();
+    let twin = ClassicalScaling::new(&Distances { sensors, values: squared }).unwrap();
+    assert!((twin.eigenvalues[0] - eigenvalues[0]).abs() > 1.0, "squaring once too often would be seen");
     let map = scaling.coordinates(3).unwrap();
     let row = |i: usize| &map.coordinates[3 * i..][..3];
     for (i, distances) in within.iter().enumerate() {
@@ -131,9 +137,14 @@ fn body_maps_agree_with_numpy_eigh() {
 
 #[test]
 fn adjusted_rand_index_agrees_with_scikit_learn() {
+    let mut changed = 0;
     for AdjustedRand { first, second, ari } in reference().adjusted_rand {
         close(adjusted_rand_index(&first, &second), ari, 1e-12);
+        let mut moved = first.clone();
+        moved[0] = 1 + first.iter().max().unwrap();
+        changed += usize::from((adjusted_rand_index(&moved, &second) - ari).abs() > 1e-6);
     }
+    assert!(changed >= 16, "one sensor in another cluster is seen in nearly all cases: {changed} of 24");
 }
 
 #[test]
@@ -146,6 +157,11 @@ fn the_baseline_s_tree_agrees_with_scipy() {
             .collect();
         found.sort_unstable();
         assert_eq!(found, edges);
+        let longest = prim(&nodes, |a, b| -weights[a][b]);
+        let shared = longest
+            .iter()
+            .filter(|edge| edges.contains(&(edge.child.min(edge.parent), edge.child.max(edge.parent))));
+        assert!(nodes.len() < 4 || shared.count() < edges.len(), "the longest tree is another");
     }
 }
 

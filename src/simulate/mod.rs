@@ -80,7 +80,8 @@ mod tests {
         change(&mut settings);
         settings.validate().unwrap();
         let agent = Agent::new(&settings.agent, &settings.skin);
-        simulate(&agent, &settings, &mut stream(1, 1, "motion", 0), &ProgressBar::hidden())
+        let seed = settings.experiment.seed;
+        simulate(&agent, &settings, &mut stream(seed, 1, "motion", 0), &ProgressBar::hidden())
     }
 
     #[test]
@@ -90,6 +91,7 @@ mod tests {
         for thread in threads {
             assert_eq!(thread.join().unwrap(), alone);
         }
+        assert_ne!(run(|settings| settings.experiment.seed = 2).unwrap(), alone);
     }
 
     #[test]
