@@ -95,7 +95,8 @@ impl ClassicalScaling {
     /// Share of the negative eigenvalues in the sum of all magnitudes, 0 for Euclidean distances.
     pub fn negative_share(&self) -> f64 {
         let total: f64 = self.eigenvalues.iter().map(|value| value.abs()).sum();
-        let negative: f64 = self.eigenvalues.iter().filter(|value| **value < 0.0).map(|value| -value).sum();
+        // A fold from 0, since the sum of nothing is −0.
+        let negative = self.eigenvalues.iter().fold(0.0, |sum, value| sum - value.min(0.0));
         if total > 0.0 { negative / total } else { 0.0 }
     }
 

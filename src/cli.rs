@@ -275,8 +275,7 @@ fn run_simulate(settings: &Settings, out: &Path) -> Result<()> {
         agent.parts.len(),
         settings.experiment.seed,
         out.display()
-    ))?;
-    Ok(())
+    ))
 }
 
 fn run_distance(input: &Path, are_symbols: bool, settings: &Settings, out: &Path) -> Result<()> {
@@ -302,8 +301,7 @@ fn run_distance(input: &Path, are_symbols: bool, settings: &Settings, out: &Path
         symbols.samples,
         symbols.levels,
         out.display()
-    ))?;
-    Ok(())
+    ))
 }
 
 fn run_map(input: &Path, dims: usize, out: &Path) -> Result<()> {
@@ -319,9 +317,8 @@ fn run_map(input: &Path, dims: usize, out: &Path) -> Result<()> {
         map.points(),
         out.display(),
         scaling.positive(),
-        100.0 * scaling.negative_share().abs()
-    ))?;
-    Ok(())
+        100.0 * scaling.negative_share()
+    ))
 }
 
 fn run_infer(
@@ -396,11 +393,11 @@ fn line(estimate: &statistics::Estimate, what: &str) -> String {
 
 fn run_reproduce(run: &Run) -> Result<ExitCode> {
     let Settings { agent, skin, experiment, .. } = run.settings;
-    let (sensors, largest) = (Agent::new(agent, skin).sites.len(), experiment.dimensions.last());
+    let sensors = Agent::new(agent, skin).sites.len();
+    let largest = *experiment.dimensions.last().expect("validated as not empty");
     ensure!(
-        largest.is_some_and(|&largest| largest < sensors),
-        "setting `experiment.dimensions` goes up to {}, but {sensors} sensors span fewer",
-        largest.map_or(0, |largest| *largest)
+        largest < sensors,
+        "setting `experiment.dimensions` goes up to {largest}, but {sensors} sensors span fewer"
     );
     prepare_folder(run.out)?;
     let judged = reproduce::experiment_1(run)?;

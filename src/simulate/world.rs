@@ -11,7 +11,7 @@ use std::sync::Once;
 
 use ode_sys as ode;
 
-use crate::agent::{Agent, Vector3};
+use crate::agent::{Agent, Joint, Vector3};
 use crate::settings;
 
 /// Where a part is and how it is turned.
@@ -85,6 +85,24 @@ fn last_message() -> String {
     String::from_utf8_lossy(&buffer[..length as usize]).into_owned()
 }
 
+/// Makes a universal joint between two bodies, in the pose that they have.
+///
+/// # Safety
+/// The world and its bodies must be live, and there must be one for each part of the joint.
+unsafe fn make_joint(world: ode::dWorldID, bodies: &[ode::dBodyID], joint: &Joint) -> ode::dJointID {
+    let [anchor, first, second] = [joint.anchor, joint.axes[0], joint.axes[1]];
+    // SAFETY: as the caller promises. Attach first: ODE ignores the anchor and axes of a joint without
+    // bodies.
+    unsafe {
+        let id = ode::dJointCreateUniversal(world, null_mut());
+        ode::dJointAttach(id, bodies[joint.parent], bodies[joint.child]);
+        ode::dJointSetUniversalAnchor(id, anchor[0], anchor[1], anchor[2]);
+        ode::dJointSetUniversalAxis1(id, first[0], first[1], first[2]);
+        ode::dJointSetUniversalAxis2(id, second[0], second[1], second[2]);
+        id
+    }
+}
+
 impl World {
     /// Puts `agent` into a fresh world with ODE's default parameters.
     ///
@@ -127,20 +145,7 @@ impl World {
                     body
                 })
                 .collect();
-            let joints: Vec<_> = agent
-                .joints
-                .iter()
-                .map(|joint| {
-                    let id = ode::dJointCreateUniversal(world, null_mut());
-                    // Attach first: ODE ignores the anchor and axes of a joint without bodies.
-                    ode::dJointAttach(id, bodies[joint.parent], bodies[joint.child]);
-                    let [anchor, first, second] = [joint.anchor, joint.axes[0], joint.axes[1]];
-                    ode::dJointSetUniversalAnchor(id, anchor[0], anchor[1], anchor[2]);
-                    ode::dJointSetUniversalAxis1(id, first[0], first[1], first[2]);
-                    ode::dJointSetUniversalAxis2(id, second[0], second[1], second[2]);
-                    id
-                })
-                .collect();
+            let joints: Vec<_> = agent.joints.iter().map(|joint| make_joint(world, &bodies, joint)).collect();
             let mut world = Self {
                 world,
                 threading,

@@ -148,6 +148,25 @@ fn the_component_s_conditional_agrees_with_the_posterior_on_a_grid() {
     assert!(wrong_freedom.1 < ALPHA / 2.0, "{wrong_freedom:?}");
 }
 
+impl NormalInverseWishart {
+    /// log NIW(μ, Σ), by which the tests check Bayes' rule: the density of a draw with respect to (μ, Λ), up to no constant.
+    fn log_density(&self, gaussian: &Gaussian) -> f64 {
+        let dims = self.mean.len() as f64;
+        let log_det_precision = 2.0 * (gaussian.log_peak + 0.5 * dims * (2.0 * PI).ln());
+        let precision = gaussian.precision();
+        let lower = self.scale.l_dirty().lower_triangle();
+        let trace = (lower.transpose() * &precision * &lower).trace();
+        let offset = &gaussian.mean - &self.mean;
+        let wishart = self.log_mass() + 0.5 * (self.freedom - dims - 1.0) * log_det_precision
+            - 0.5 * trace
+            - 0.5 * self.freedom * dims * std::f64::consts::LN_2
+            - 0.25 * dims * (dims - 1.0) * PI.ln();
+        let normal = 0.5 * dims * (self.mean_weight / (2.0 * PI)).ln() + 0.5 * log_det_precision
+            - 0.5 * self.mean_weight * offset.dot(&(&precision * &offset));
+        wishart + normal
+    }
+}
+
 #[test]
 fn marginal_likelihood_prior_posterior_and_likelihood_agree() {
     // Bayes' rule at any (μ, Σ): log p(x) = log prior + log likelihood − log posterior.

@@ -209,17 +209,12 @@ fn anchors_stay_together_and_closer_with_a_shorter_step() {
 
 /// Makes the joints anew with another constraint force mixing, which a joint copies when it is made.
 fn soften(world: &mut World, agent: &Agent, cfm: f64) {
-    // SAFETY: world, bodies and joints are live; the new joints are made as `World::new` makes them.
+    // SAFETY: world, bodies and joints are live; each joint is detached before its successor is made.
     unsafe {
         ode::dWorldSetCFM(world.world, cfm);
         for (id, joint) in world.joints.iter_mut().zip(&agent.joints) {
             ode::dJointAttach(*id, null_mut(), null_mut());
-            *id = ode::dJointCreateUniversal(world.world, null_mut());
-            ode::dJointAttach(*id, world.bodies[joint.parent], world.bodies[joint.child]);
-            let [anchor, first, second] = [joint.anchor, joint.axes[0], joint.axes[1]];
-            ode::dJointSetUniversalAnchor(*id, anchor[0], anchor[1], anchor[2]);
-            ode::dJointSetUniversalAxis1(*id, first[0], first[1], first[2]);
-            ode::dJointSetUniversalAxis2(*id, second[0], second[1], second[2]);
+            *id = make_joint(world.world, &world.bodies, joint);
         }
     }
 }
