@@ -10,6 +10,7 @@
 //! [`record`] reads and writes every file.
 
 pub mod agent;
+pub mod baselines;
 pub mod body_map;
 pub mod claims;
 pub mod distance;

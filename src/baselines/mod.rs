@@ -1,0 +1,67 @@
+//! Body map and number of clusters → a label for each sensor, by the three methods that the paper compares
+//! its mixtures with (figure 8a).
+//!
+//! Neither finds the number of clusters, so all are told it. The results are equal up to rounding for maps
+//! in other units, moved or turned: no method has a constant with a unit.
+
+mod gmm;
+mod k_means;
+mod ward;
+
+use clap::ValueEnum;
+use serde::{Deserialize, Serialize};
+
+pub use self::gmm::{MixtureFit, gmm, ridge};
+pub use self::k_means::{Partition, k_means};
+pub use self::ward::ward;
+use crate::body_map::BodyMap;
+use crate::streams::Stream;
+
+/// The method to cluster by.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, ValueEnum)]
+#[serde(rename_all = "kebab-case")]
+pub enum Clustering {
+    /// Ward's method: merges the two clusters whose union adds the least to the sum of squares.
+    Ward,
+    /// k-means: the least sum of squares that Lloyd's algorithm finds.
+    KMeans,
+    /// Gaussian mixture model: the greatest likelihood that expectation–maximisation finds.
+    Gmm,
+}
+
+impl Clustering {
+    /// All three, in the order of figure 8a.
+    pub const ALL: [Self; 3] = [Self::Ward, Self::KMeans, Self::Gmm];
+
+    /// Name on the command line and in every file.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Ward => "ward",
+            Self::KMeans => "k-means",
+            Self::Gmm => "gmm",
+        }
+    }
+}
+
+/// The cluster of each of the n points, below `clusters`.
+///
+/// k-means and the mixture take the best of `restarts` random starts; Ward's method has no start and draws
+/// nothing. `clusters` and `restarts` of 0 count as 1. Points that coincide share a cluster, so that there
+/// are no more clusters than different points; a mixture may also find fewer. The labels of clusters that
+/// are not there are not used. The coordinates and their squares must be finite.
+pub fn cluster(
+    method: Clustering,
+    map: &BodyMap,
+    clusters: usize,
+    restarts: usize,
+    rng: &mut Stream,
+) -> Vec<usize> {
+    match method {
+        Clustering::Ward => ward(map, clusters),
+        Clustering::KMeans => k_means(map, clusters, restarts, rng).labels,
+        Clustering::Gmm => gmm(map, clusters, restarts, rng).labels,
+    }
+}
+
+#[cfg(test)]
+mod tests;
