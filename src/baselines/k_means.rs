@@ -12,7 +12,7 @@ use crate::body_map::BodyMap;
 use crate::schema::points::Points;
 use crate::streams::Stream;
 
-/// Rounds of Lloyd's algorithm after which it ends in any case; it took fewer than 100 on body maps.
+/// Rounds of Lloyd's algorithm after which it ends in any case.
 const ROUNDS: usize = 1000;
 
 /// Points in clusters, each point in that of the nearest mean.
@@ -83,7 +83,7 @@ fn starts(points: &Points, clusters: usize, rng: &mut Stream) -> Vec<Vec<f64>> {
 }
 
 /// Moves each centre to the mean of its points. A centre that has none left starts again at the point that
-/// is farthest from all others.
+/// is farthest from all other centres.
 fn move_to_means(centres: &mut [Vec<f64>], points: &Points, labels: &[usize]) {
     let mut sums = vec![vec![0.0; points.dims]; centres.len()];
     let mut counts = vec![0.0; centres.len()];
@@ -119,4 +119,38 @@ fn nearest(x: &[f64], centres: &[impl AsRef<[f64]>]) -> (usize, f64) {
 /// Squared distance.
 fn square(x: &[f64], y: &[f64]) -> f64 {
     x.iter().zip(y).map(|(x, y)| (x - y).powi(2)).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::streams::stream;
+
+    #[test]
+    fn an_emptied_centre_starts_again_at_the_point_farthest_from_the_others() {
+        let points = Points::from_rows(1, vec![0.0, 1.0, 10.0, 14.0, 30.0]);
+        let mut centres = vec![vec![0.0], vec![100.0], vec![10.0], vec![200.0]];
+        move_to_means(&mut centres, &points, &[0, 0, 2, 2, 2]);
+        // The means are 0.5 and 18; 30 is 12 from them, and then 10 is 8.
+        assert_eq!(centres, [[0.5], [30.0], [18.0], [10.0]]);
+    }
+
+    #[test]
+    fn the_inertia_is_that_of_the_labels() {
+        let points = Points::from_rows(1, vec![0.0, 1.0, 10.0, 14.0]);
+        let found = descend(&points, 2, &mut stream(1, 1, "k-means", 0));
+        assert_eq!(found.inertia, 0.5 + 8.0);
+        assert_eq!(found.labels[0], found.labels[1]);
+        assert_eq!(found.labels[2], found.labels[3]);
+    }
+
+    #[test]
+    fn starts_are_different_points_and_far_ones_more_often() {
+        let points = Points::from_rows(1, vec![0.0, 0.0, 1.0, 100.0]);
+        let count = |k: usize, seed| starts(&points, k, &mut stream(seed, 1, "starts", 0)).len();
+        assert_eq!((count(3, 1), count(4, 1), count(9, 1)), (3, 3, 3), "two of the four points coincide");
+        let far = (0..50)
+            .filter(|&seed| starts(&points, 2, &mut stream(seed, 1, "starts", 0)).contains(&vec![100.0]));
+        assert!(far.count() >= 49);
+    }
 }

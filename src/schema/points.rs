@@ -33,7 +33,7 @@ impl Points {
     }
 
     /// Takes points as they are, by rows.
-    pub(super) fn from_rows(dims: usize, rows: Vec<f64>) -> Self {
+    pub(crate) fn from_rows(dims: usize, rows: Vec<f64>) -> Self {
         let count = rows.len() / dims;
         let mut blocks = vec![0.0; count.div_ceil(LANES) * dims * LANES];
         for (i, row) in rows.chunks_exact(dims).enumerate() {
