@@ -1,6 +1,7 @@
 //! Agreement with NumPy, SciPy, scikit-learn and statsmodels; `tests/reference/make.py` made the values.
 
-use bodyschema::body_map::ClassicalScaling;
+use bodyschema::baselines::{gmm, k_means, ridge, ward};
+use bodyschema::body_map::{BodyMap, ClassicalScaling};
 use bodyschema::distance::{Distances, information_metric};
 use bodyschema::evaluate::adjusted_rand_index;
 use bodyschema::quantise::Symbols;
@@ -8,6 +9,7 @@ use bodyschema::schema::gaussian::NormalInverseWishart;
 use bodyschema::schema::points::Statistics;
 use bodyschema::schema::tree::prim;
 use bodyschema::statistics;
+use bodyschema::streams::stream;
 use nalgebra::{DMatrix, DVector};
 use serde::Deserialize;
 
@@ -19,6 +21,7 @@ struct Reference {
     spanning_trees: Vec<SpanningTree>,
     marginal_likelihoods: Vec<MarginalLikelihood>,
     statistics: Intervals,
+    baselines: Baselines,
 }
 
 #[derive(Deserialize)]
@@ -89,6 +92,23 @@ struct MannWhitney {
     first: Vec<f64>,
     second: Vec<f64>,
     p: f64,
+}
+
+#[derive(Deserialize)]
+struct Baselines {
+    points: Vec<Vec<f64>>,
+    ridge: f64,
+    cases: Vec<Clusters>,
+}
+
+#[derive(Deserialize)]
+struct Clusters {
+    clusters: usize,
+    ward: Vec<usize>,
+    k_means: Vec<usize>,
+    inertia: f64,
+    gmm: Vec<usize>,
+    log_likelihood: f64,
 }
 
 fn reference() -> Reference {
@@ -202,5 +222,56 @@ fn intervals_and_tests_agree_with_statsmodels_and_scipy() {
     }
     for MannWhitney { first, second, p } in mann_whitney {
         close(statistics::mann_whitney(&first, &second), p, 1e-9);
+    }
+}
+
+/// Whether two clusterings are one up to the names of the clusters.
+fn same(first: &[usize], second: &[usize]) -> bool {
+    (adjusted_rand_index(first, second) - 1.0).abs() < 1e-12
+}
+
+#[test]
+fn ward_agrees_with_scipy() {
+    let Baselines { points, cases, .. } = reference().baselines;
+    let map = BodyMap { dims: 3, coordinates: points.concat() };
+    let flat = BodyMap { dims: 2, coordinates: points.iter().flat_map(|x| x[..2].to_vec()).collect() };
+    for expected in cases {
+        assert!(same(&ward(&map, expected.clusters), &expected.ward));
+        assert!(!same(&ward(&flat, expected.clusters), &expected.ward), "a lost dimension is seen");
+        assert!(!same(&ward(&map, expected.clusters + 1), &expected.ward), "a cut too low is seen");
+        assert!(!same(&expected.k_means, &expected.ward), "another method is seen");
+    }
+}
+
+#[test]
+fn k_means_agrees_with_scikit_learn() {
+    let Baselines { points, cases, .. } = reference().baselines;
+    let map = BodyMap { dims: 3, coordinates: points.concat() };
+    for Clusters { clusters, k_means: labels, inertia, gmm, .. } in cases {
+        let rng = |seed| stream(seed, 1, "k-means", 0);
+        let found = k_means(&map, clusters, 200, &mut rng(1));
+        close(found.inertia / inertia, 1.0, 1e-9);
+        assert!(same(&found.labels, &labels));
+        assert!(!same(&gmm, &labels), "another method is seen");
+        let worse =
+            (0..20).filter(|&seed| k_means(&map, clusters, 1, &mut rng(seed)).inertia > 1.001 * inertia);
+        assert!(worse.count() > 2, "a start that is not the best is seen");
+    }
+}
+
+#[test]
+fn the_gaussian_mixture_agrees_with_scikit_learn() {
+    let Baselines { points, ridge: expected_ridge, cases } = reference().baselines;
+    let map = BodyMap { dims: 3, coordinates: points.concat() };
+    close(ridge(&map) / expected_ridge, 1.0, 1e-12);
+    for Clusters { clusters, k_means: start, gmm: labels, log_likelihood, .. } in cases {
+        let rng = |seed| stream(seed, 1, "gmm", 0);
+        let found = gmm(&map, clusters, 200, &mut rng(1));
+        close(found.log_likelihood / log_likelihood, 1.0, 1e-6);
+        assert!(same(&found.labels, &labels));
+        assert!(!same(&start, &labels), "a climb that stays where k-means starts it is seen");
+        let single = |seed| gmm(&map, clusters, 1, &mut rng(seed)).log_likelihood;
+        let worse = (0..20).filter(|&seed| single(seed) < log_likelihood - 0.1);
+        assert!(worse.count() > 2, "a start that is not the best is seen");
     }
 }
