@@ -7,22 +7,20 @@
 
 use std::f64::consts::PI;
 
-use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+use nalgebra::{DMatrix, DVector};
 use rand::{Rng, RngExt};
 use rand_distr::{ChiSquared, StandardNormal};
 
+use super::bordered::Bordered;
 use super::points::{Points, Statistics};
 use crate::settings::Schema;
 
-/// A multivariate Gaussian N(μ, Σ), kept by a root of its precision.
+/// A multivariate Gaussian N(μ, Σ), kept by a root of its precision: |P x − P μ|² is all that its density
+/// needs, and no system is solved for μ.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Gaussian {
-    /// μ.
-    pub mean: DVector<f64>,
-    /// P, lower triangular, with Λ = Σ⁻¹ = Pᵀ P.
-    root: DMatrix<f64>,
-    /// The same by rows, each up to its diagonal.
-    packed_root: Vec<f64>,
+    /// Row i is (row i of P, −(P μ)_i), P lower triangular with Λ = Σ⁻¹ = Pᵀ P.
+    rows: Bordered,
     /// Log density at the mean.
     pub log_peak: f64,
 }
@@ -31,39 +29,75 @@ impl Gaussian {
     /// From the mean and a lower triangular root P of the precision, Λ = Pᵀ P.
     pub fn new(mean: DVector<f64>, root: DMatrix<f64>) -> Self {
         let dims = mean.len();
-        let packed_root = (0..dims).flat_map(|i| (0..=i).map(move |j| (i, j))).map(|at| root[at]).collect();
-        let log_det_root: f64 = (0..dims).map(|i| root[(i, i)].ln()).sum();
-        let log_peak = log_det_root - 0.5 * dims as f64 * (2.0 * PI).ln();
-        Self { mean, root, packed_root, log_peak }
+        let shift = &root * mean;
+        let mut rows = Bordered::zeros(dims);
+        for i in 0..dims {
+            (0..=i).for_each(|j| rows.row_mut(i)[j] = root[(i, j)]);
+            rows.row_mut(i)[dims] = -shift[i];
+        }
+        Self::from_rows(rows)
     }
 
-    /// Row i of P, up to its diagonal.
+    fn from_rows(rows: Bordered) -> Self {
+        let log_peak = rows.log_diagonal() - 0.5 * rows.dims as f64 * (2.0 * PI).ln();
+        Self { rows, log_peak }
+    }
+
+    /// Row i of P, up to its diagonal, and −(P μ)_i.
     #[inline(always)]
-    pub fn root_row(&self, i: usize) -> &[f64] {
-        &self.packed_root[i * (i + 1) / 2..][..=i]
+    pub fn root_row(&self, i: usize) -> (&[f64], f64) {
+        let row = self.rows.row(i);
+        (&row[..=i], row[self.rows.dims])
     }
 
     /// log N(x; μ, Σ).
-    pub fn log_density(&self, x: &DVector<f64>) -> f64 {
-        self.log_peak - 0.5 * (&self.root * (x - &self.mean)).norm_squared()
+    pub fn log_density(&self, x: &[f64]) -> f64 {
+        let square = |i: usize| {
+            let (root, shift) = self.root_row(i);
+            root.iter().zip(x).fold(shift, |sum, (root, x)| sum + root * x).powi(2)
+        };
+        self.log_peak - 0.5 * (0..x.len()).map(square).sum::<f64>()
+    }
+
+    /// P.
+    fn root(&self) -> DMatrix<f64> {
+        let dims = self.rows.dims;
+        DMatrix::from_fn(dims, dims, |i, j| self.rows.row(i)[j])
+    }
+
+    /// x with P x − P μ = noise.
+    fn unwhiten(&self, noise: DVector<f64>) -> DVector<f64> {
+        let shift = DVector::from_iterator(noise.len(), self.rows.border());
+        self.root().solve_lower_triangular(&(noise - shift)).expect("the diagonal of P is positive")
+    }
+
+    /// μ.
+    pub fn mean(&self) -> DVector<f64> {
+        self.unwhiten(DVector::zeros(self.rows.dims))
+    }
+
+    /// Λ, with the border −Λ μ.
+    pub fn information(&self) -> Bordered {
+        let mut information = Bordered::zeros(self.rows.dims);
+        information.add_outer(self.rows.body());
+        information
     }
 
     /// Λ.
     pub fn precision(&self) -> DMatrix<f64> {
-        self.root.tr_mul(&self.root)
+        self.root().tr_mul(&self.root())
     }
 
     /// Σ.
     pub fn covariance(&self) -> DMatrix<f64> {
-        let identity = DMatrix::identity(self.mean.len(), self.mean.len());
-        let inverse = self.root.solve_lower_triangular(&identity).expect("the diagonal of P is positive");
+        let identity = DMatrix::identity(self.rows.dims, self.rows.dims);
+        let inverse = self.root().solve_lower_triangular(&identity).expect("the diagonal of P is positive");
         &inverse * inverse.transpose()
     }
 
     /// Draws a point.
     pub fn draw(&self, rng: &mut impl Rng) -> DVector<f64> {
-        let noise = standard_normal(self.mean.len(), rng);
-        &self.mean + self.root.solve_lower_triangular(&noise).expect("the diagonal of P is positive")
+        self.unwhiten(standard_normal(self.rows.dims, rng))
     }
 }
 
@@ -75,12 +109,10 @@ pub fn standard_normal(dims: usize, rng: &mut impl Rng) -> DVector<f64> {
 /// NIW(m, k, Ψ, ν): Σ ~ inverse-Wishart(Ψ, ν), μ ~ N(m, Σ / k).
 #[derive(Debug, Clone)]
 pub struct NormalInverseWishart {
-    /// m.
-    pub mean: DVector<f64>,
-    /// k > 0, in observations.
-    pub mean_weight: f64,
-    /// Ψ by its Cholesky factor.
-    scale: Cholesky<f64, Dyn>,
+    /// Ψ + k m mᵀ, with the border k m and the corner k: to these a point x adds (x, 1)(x, 1)ᵀ.
+    moments: Bordered,
+    /// U, upper triangular, with Ψ = Uᵀ U.
+    scale: Bordered,
     /// ν > d − 1.
     pub freedom: f64,
 }
@@ -106,8 +138,34 @@ pub enum PriorError {
 impl NormalInverseWishart {
     /// From m, k, Ψ and ν; `None` if Ψ is not positive definite.
     pub fn new(mean: DVector<f64>, mean_weight: f64, scale: DMatrix<f64>, freedom: f64) -> Option<Self> {
-        debug_assert!(mean_weight > 0.0 && freedom > mean.len() as f64 - 1.0);
-        Some(Self { mean, mean_weight, scale: scale.cholesky()?, freedom })
+        let dims = mean.len();
+        debug_assert!(mean_weight > 0.0 && freedom > dims as f64 - 1.0);
+        let mean = mean.push(1.0);
+        let mut moments = Bordered::zeros(dims);
+        for i in 0..=dims {
+            for j in i..=dims {
+                let scale = if j < dims { scale[(i, j)] } else { 0.0 };
+                moments.row_mut(i)[j] = scale + mean_weight * mean[i] * mean[j];
+            }
+        }
+        Self::from_moments(moments, freedom)
+    }
+
+    fn from_moments(moments: Bordered, freedom: f64) -> Option<Self> {
+        let mut scale = moments.clone();
+        scale.eliminate_border();
+        Some(Self { moments, scale: scale.factor()?, freedom })
+    }
+
+    /// m.
+    pub fn mean(&self) -> DVector<f64> {
+        let weight = self.mean_weight();
+        DVector::from_iterator(self.moments.dims, self.moments.border().map(|b| b / weight))
+    }
+
+    /// k > 0, in observations.
+    pub fn mean_weight(&self) -> f64 {
+        self.moments.corner()
     }
 
     /// The prior of Fraley & Raftery (2007), section 3.2: m₀ the mean of the points, k₀ = 0.01, ν₀ = d + 2,
@@ -140,53 +198,57 @@ impl NormalInverseWishart {
 
     /// The posterior given points with these statistics: again normal-inverse-Wishart (Murphy, 250–254).
     pub fn posterior(&self, data: &Statistics) -> Self {
-        let weight = self.mean_weight + data.count;
-        let mean = (self.mean_weight * &self.mean + &data.sum) / weight;
-        // The lower triangles alone; Cholesky reads no more.
-        let lower = self.scale.l_dirty().lower_triangle();
-        let mut scale = &lower * lower.transpose() + &data.outer;
-        scale.ger(self.mean_weight, &self.mean, &self.mean, 1.0);
-        scale.ger(-weight, &mean, &mean, 1.0);
-        let scale = scale.cholesky().expect("a positive definite scale plus a scatter is positive definite");
-        Self { mean, mean_weight: weight, scale, freedom: self.freedom + data.count }
+        let mut moments = self.moments.clone();
+        moments.add(&data.moments);
+        Self::from_moments(moments, self.freedom + data.count())
+            .expect("a positive definite scale plus a scatter is positive definite")
     }
 
     /// Draws (μ, Σ).
     ///
-    /// Λ is Wishart(Ψ⁻¹, ν) by Bartlett's decomposition: with Ψ = L Lᵀ and B upper triangular,
-    /// B_ii² ~ χ²(ν − d + i) and normal above, Λ = L⁻ᵀ B Bᵀ L⁻¹, so that P = Bᵀ L⁻¹ is lower triangular.
+    /// Λ is Wishart(Ψ⁻¹, ν) by Bartlett's decomposition: with Ψ = Uᵀ U and B upper triangular,
+    /// B_ii² ~ χ²(ν − d + i) and normal above, Λ = U⁻¹ B Bᵀ U⁻ᵀ, so that Pᵀ = U⁻¹ B is upper triangular.
+    /// μ = m + P⁻¹ z / √k with z standard normal, so that P μ = P m + z / √k.
     pub fn draw(&self, rng: &mut impl Rng) -> Gaussian {
-        let dims = self.mean.len();
-        let mut root = DMatrix::zeros(dims, dims);
+        let dims = self.scale.dims;
+        let mut columns = Bordered::zeros(dims);
         for i in 0..dims {
+            let row = columns.row_mut(i);
             let freedom = self.freedom - dims as f64 + (i + 1) as f64;
             let square: f64 = rng.sample(ChiSquared::new(freedom).expect("ν > d − 1"));
             // The smallest normal number stands for an underflow to zero, which has no logarithm.
-            root[(i, i)] = square.max(f64::MIN_POSITIVE).sqrt();
-            for j in i + 1..dims {
-                root[(i, j)] = rng.sample(StandardNormal);
-            }
+            row[i] = square.max(f64::MIN_POSITIVE).sqrt();
+            row[i + 1..dims].fill_with(|| rng.sample(StandardNormal));
         }
-        self.scale.l_dirty().tr_solve_lower_triangular_mut(&mut root);
-        let root = root.transpose();
-        let noise = standard_normal(dims, rng) / self.mean_weight.sqrt();
-        let offset = root.solve_lower_triangular(&noise).expect("the diagonal of P is positive");
-        Gaussian::new(&self.mean + offset, root)
+        self.scale.solve(&mut columns);
+        let mut rows = Bordered::zeros(dims);
+        let spread = 1.0 / self.mean_weight().sqrt();
+        let mean = self.mean();
+        for i in 0..dims {
+            let row = rows.row_mut(i);
+            let mut shift = spread * rng.sample::<f64, _>(StandardNormal);
+            for j in 0..=i {
+                row[j] = columns.row(j)[i];
+                shift += row[j] * mean[j];
+            }
+            row[dims] = -shift;
+        }
+        Gaussian::from_rows(rows)
     }
 
     /// Log marginal likelihood of points with these statistics, μ and Σ integrated out (Murphy, 266).
     pub fn log_marginal(&self, data: &Statistics) -> f64 {
         let posterior = self.posterior(data);
-        let dims = self.mean.len() as f64;
-        self.log_mass() - posterior.log_mass() - 0.5 * data.count * dims * PI.ln()
-            + 0.5 * dims * (self.mean_weight / posterior.mean_weight).ln()
+        let dims = self.scale.dims as f64;
+        self.log_mass() - posterior.log_mass() - 0.5 * data.count() * dims * PI.ln()
+            + 0.5 * dims * (self.mean_weight() / posterior.mean_weight()).ln()
     }
 
     /// (ν / 2) log |Ψ| − log Γ_d(ν / 2) up to a constant that depends on d alone.
     fn log_mass(&self) -> f64 {
-        let log_det = 2.0 * self.scale.l_dirty().diagonal().iter().map(|x| x.ln()).sum::<f64>();
+        let log_det = 2.0 * self.scale.log_diagonal();
         let log_gamma: f64 =
-            (0..self.mean.len()).map(|i| libm::lgamma((self.freedom - i as f64) / 2.0)).sum();
+            (0..self.scale.dims).map(|i| libm::lgamma((self.freedom - i as f64) / 2.0)).sum();
         0.5 * self.freedom * log_det - log_gamma
     }
 }

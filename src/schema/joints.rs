@@ -5,31 +5,36 @@
 //! densities, and it is data of both when they are updated.
 
 use nalgebra::{DMatrix, DVector};
-use rand::Rng;
+use rand::{Rng, RngExt};
+use rand_distr::StandardNormal;
 
-use super::gaussian::{Gaussian, standard_normal};
+use super::bordered::Bordered;
+use super::gaussian::Gaussian;
 
 /// Draws q from the normalised product N(q; μ_s, Σ_s) N(q; μ_c, Σ_c) (equation 18), a Gaussian with
-/// precision Λ_s + Λ_c.
-pub fn draw_between(s: &Gaussian, c: &Gaussian, rng: &mut impl Rng) -> DVector<f64> {
-    let (precision_s, precision_c) = (s.precision(), c.precision());
-    let pull = &precision_s * &s.mean + &precision_c * &c.mean;
-    let factor = (precision_s + precision_c).cholesky().expect("a sum of precisions is positive definite");
-    let noise = standard_normal(pull.len(), rng);
-    let spread = factor.l_dirty().tr_solve_lower_triangular(&noise).expect("its diagonal is positive");
-    factor.solve(&pull) + spread
+/// precision Λ_s + Λ_c, given the [information](Gaussian::information) of both.
+///
+/// With Λ_s + Λ_c = Uᵀ U its mean is U⁻¹ U⁻ᵀ (Λ_s μ_s + Λ_c μ_c).
+pub fn draw_between(s: &Bordered, c: &Bordered, rng: &mut impl Rng) -> DVector<f64> {
+    let mut sum = s.clone();
+    sum.add(c);
+    let factor = sum.factor().expect("a sum of precisions is positive definite");
+    let whitened = factor.border().map(|border| rng.sample::<f64, _>(StandardNormal) - border);
+    let mut q = DVector::from_iterator(factor.dims, whitened);
+    factor.solve_vector(q.as_mut_slice());
+    q
 }
 
 /// −log (N(q; μ_s, Σ_s) N(q; μ_c, Σ_c)), the quadratic cost of equation 21.
 pub fn cost(q: &DVector<f64>, s: &Gaussian, c: &Gaussian) -> f64 {
-    -s.log_density(q) - c.log_density(q)
+    -s.log_density(q.as_slice()) - c.log_density(q.as_slice())
 }
 
 /// The same with the joint integrated out: −log N(μ_s; μ_c, Σ_s + Σ_c).
 pub fn collapsed_cost(s: &Gaussian, c: &Gaussian) -> f64 {
     let covariance: DMatrix<f64> = s.covariance() + c.covariance();
     let factor = covariance.cholesky().expect("a sum of covariances is positive definite");
-    let offset = &s.mean - &c.mean;
+    let offset = s.mean() - c.mean();
     let whitened = factor.l_dirty().solve_lower_triangular(&offset).expect("its diagonal is positive");
     let log_det = 2.0 * factor.l_dirty().diagonal().iter().map(|x| x.ln()).sum::<f64>();
     0.5 * (whitened.norm_squared() + log_det + offset.len() as f64 * (2.0 * std::f64::consts::PI).ln())
@@ -53,7 +58,8 @@ mod tests {
     fn a_joint_follows_the_product_of_both_densities_and_not_one_alone() {
         let (s, c) = (scalar_gaussian(1.0, 0.5), scalar_gaussian(-0.4, 1.2));
         let mut rng = stream(1, 1, "joint", 0);
-        let draws: Vec<f64> = (0..4000).map(|_| draw_between(&s, &c, &mut rng)[0]).collect();
+        let draws: Vec<f64> =
+            (0..4000).map(|_| draw_between(&s.information(), &c.information(), &mut rng)[0]).collect();
         let total = product_mass(&s, &c, 10.0);
         assert!(ks_one_sample(&draws, |q| product_mass(&s, &c, q) / total) > ALPHA);
         // The broken twin forgets the parent.

@@ -1,10 +1,13 @@
 //! Stage 6. Body map → samples of the body schema, by the DPGMM-LJ or the DPGMM (section 3).
 
+pub mod bordered;
 pub mod gaussian;
 pub mod joints;
+pub mod labels;
 pub mod points;
 pub mod sweep;
 pub mod tree;
+mod vectorised;
 
 use clap::ValueEnum;
 use indicatif::ProgressBar;

@@ -12,8 +12,10 @@ use rand::{Rng, RngExt};
 use rand_distr::Gamma;
 
 use super::Model;
+use super::bordered::Bordered;
 use super::gaussian::{Gaussian, NormalInverseWishart};
 use super::joints;
+use super::labels;
 use super::points::{Points, Statistics};
 use super::tree::{Edge, prim};
 use crate::settings::{EdgeWeight, Schema};
@@ -43,8 +45,6 @@ pub struct Chain<'a> {
     pub joints: Vec<Joint>,
     /// Statistics of each component's points.
     statistics: Vec<Statistics>,
-    /// Room for K × n log densities.
-    densities: Vec<f64>,
 }
 
 impl<'a> Chain<'a> {
@@ -66,8 +66,7 @@ impl<'a> Chain<'a> {
             gaussians: Vec::new(),
             log_weights: Vec::new(),
             joints: Vec::new(),
-            statistics: vec![Statistics::new(points.dims); components],
-            densities: vec![0.0; components * points.padded()],
+            statistics: Vec::new(),
         };
         chain.count();
         chain.draw_given_labels(rng);
@@ -92,38 +91,16 @@ impl<'a> Chain<'a> {
 
     /// z_i ~ Categorical ∝ π_k N(x_i; μ_k, Σ_k) (equation 14).
     fn draw_labels(&mut self, rng: &mut impl Rng) {
-        // Below this, a weight does not change the last bit of a sum that holds a 1.
-        const NEGLIGIBLE: f64 = -60.0;
-        let padded = self.points.padded();
-        for ((gaussian, log_weight), densities) in
-            self.gaussians.iter().zip(&self.log_weights).zip(self.densities.chunks_exact_mut(padded))
-        {
-            self.points.log_densities(gaussian, densities);
-            densities.iter_mut().for_each(|density| *density += log_weight);
-        }
-        let mut cumulative = vec![0.0; self.gaussians.len()];
-        for (i, label) in self.labels.iter_mut().enumerate() {
-            let logs = self.densities[i..].iter().step_by(padded);
-            let largest = logs.clone().fold(f64::NEG_INFINITY, |kept, log| kept.max(*log));
-            let mut total = 0.0;
-            for (sum, log) in cumulative.iter_mut().zip(logs) {
-                let below = log - largest;
-                if below > NEGLIGIBLE {
-                    total += below.exp();
-                }
-                *sum = total;
-            }
-            let threshold = rng.random::<f64>() * total;
-            *label = cumulative.partition_point(|sum| *sum <= threshold).min(cumulative.len() - 1);
-        }
+        labels::draw(self.points, &self.gaussians, &self.log_weights, &mut self.labels, rng);
     }
 
     /// Brings the statistics up to date with the labels.
     fn count(&mut self) {
-        self.statistics.iter_mut().for_each(Statistics::clear);
+        let mut members = vec![Vec::new(); self.settings.components];
         for (i, &label) in self.labels.iter().enumerate() {
-            self.statistics[label].add(self.points.row(i));
+            members[label].push(i);
         }
+        self.statistics = members.iter().map(|members| Statistics::of(self.points, members)).collect();
     }
 
     /// Drops the joints of components that are no longer active: a joint is drawn "for each activated
@@ -150,7 +127,7 @@ impl<'a> Chain<'a> {
     fn draw_weights(&mut self, rng: &mut impl Rng) {
         let share = self.settings.concentration / self.settings.components as f64;
         let draw = |data: &Statistics| {
-            let gamma = Gamma::new(share + data.count, 1.0).expect("γ > 0");
+            let gamma = Gamma::new(share + data.count(), 1.0).expect("γ > 0");
             rng.sample::<f64, _>(gamma).ln()
         };
         self.log_weights = self.statistics.iter().map(draw).collect();
@@ -160,6 +137,12 @@ impl<'a> Chain<'a> {
     fn update_tree(&mut self, rng: &mut impl Rng) {
         let active = self.active();
         let components = &self.gaussians;
+        let mut informations: Vec<Option<Bordered>> = vec![None; components.len()];
+        active.iter().for_each(|&k| informations[k] = Some(components[k].information()));
+        let information = |k: usize| informations[k].as_ref().expect("joints connect active components");
+        let draw_joint = |edge: Edge, rng: &mut _| {
+            joints::draw_between(information(edge.child), information(edge.parent), rng)
+        };
         self.joints = match self.settings.edge_weight {
             EdgeWeight::Literal => {
                 // Each component but the root has one joint, drawn given the parent it has; one that has
@@ -168,7 +151,7 @@ impl<'a> Chain<'a> {
                 for &s in &active {
                     let edge = self.joints.iter().map(|joint| joint.edge).find(|edge| edge.child == s);
                     own[s] = Some(match edge {
-                        Some(edge) => self.draw_joint(edge, rng),
+                        Some(edge) => draw_joint(edge, rng),
                         None => components[s].draw(rng),
                     });
                 }
@@ -183,7 +166,7 @@ impl<'a> Chain<'a> {
                 let mut drawn: Vec<Option<(f64, DVector<f64>)>> = vec![None; size * size];
                 for (at, &s) in active.iter().enumerate() {
                     for &c in &active[..at] {
-                        let q = self.draw_joint(Edge { child: s, parent: c }, rng);
+                        let q = draw_joint(Edge { child: s, parent: c }, rng);
                         drawn[c * size + s] = Some((joints::cost(&q, &components[s], &components[c]), q));
                     }
                 }
@@ -198,15 +181,10 @@ impl<'a> Chain<'a> {
             EdgeWeight::Collapsed => {
                 prim(&active, |s, c| joints::collapsed_cost(&components[s], &components[c]))
                     .into_iter()
-                    .map(|edge| Joint { edge, position: self.draw_joint(edge, rng) })
+                    .map(|edge| Joint { edge, position: draw_joint(edge, rng) })
                     .collect()
             }
         };
-    }
-
-    /// q of an edge (equation 18).
-    fn draw_joint(&self, edge: Edge, rng: &mut impl Rng) -> DVector<f64> {
-        joints::draw_between(&self.gaussians[edge.child], &self.gaussians[edge.parent], rng)
     }
 
     /// The active components: those of more than one point (section 3.2).
@@ -219,9 +197,9 @@ impl<'a> Chain<'a> {
     pub fn tree(&self) -> Vec<Edge> {
         match self.model {
             Model::DpgmmLj => self.joints.iter().map(|joint| joint.edge).collect(),
-            Model::Dpgmm => {
-                prim(&self.active(), |a, b| self.gaussians[a].mean.metric_distance(&self.gaussians[b].mean))
-            }
+            Model::Dpgmm => prim(&self.active(), |a, b| {
+                self.gaussians[a].mean().metric_distance(&self.gaussians[b].mean())
+            }),
         }
     }
 
@@ -233,18 +211,18 @@ impl<'a> Chain<'a> {
         let concentration = self.settings.concentration;
         let share = concentration / self.settings.components as f64;
         let labels = libm::lgamma(concentration) - libm::lgamma(concentration + self.points.count as f64);
-        let occupied = self.statistics.iter().filter(|data| data.count > 0.0);
+        let occupied = self.statistics.iter().filter(|data| data.count() > 0.0);
         labels
             + occupied
                 .map(|data| {
-                    libm::lgamma(share + data.count) - libm::lgamma(share) + self.prior.log_marginal(data)
+                    libm::lgamma(share + data.count()) - libm::lgamma(share) + self.prior.log_marginal(data)
                 })
                 .sum::<f64>()
     }
 }
 
 fn is_active(data: &Statistics) -> bool {
-    data.count > 1.0
+    data.count() > 1.0
 }
 
 #[cfg(test)]

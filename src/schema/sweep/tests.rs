@@ -36,7 +36,7 @@ enum Mutant {
 
 impl Mutant {
     /// The correct draw of labels, or one that lacks the Gaussians' normalising constants, or one that
-    /// confuses two components, or two points.
+    /// confuses two components, or two points that are far apart.
     fn draw_labels(self, chain: &mut Chain, rng: &mut Stream) {
         if self == Self::UnnormalisedWeight {
             let kept = chain.gaussians.clone();
@@ -50,7 +50,8 @@ impl Mutant {
             chain.labels.iter_mut().filter(|label| **label < 2).for_each(|label| *label = 1 - *label);
         }
         if self == Self::SwappedPoints {
-            chain.labels.swap(0, 1);
+            let last = chain.labels.len() - 1;
+            chain.labels.swap(0, last);
         }
     }
 }
@@ -78,7 +79,8 @@ mod conditionals {
             }
             let p = |i: usize| {
                 let x = DVector::from_row_slice(points.row(i));
-                let weigh = |k: usize| (chain.log_weights[k] + chain.gaussians[k].log_density(&x)).exp();
+                let weigh =
+                    |k: usize| (chain.log_weights[k] + chain.gaussians[k].log_density(x.as_slice())).exp();
                 let weights = [0, 1, 2].map(weigh);
                 let total: f64 = weights.iter().sum();
                 chi_squared(&counts[i], &weights.map(|weight| weight / total))
@@ -270,7 +272,7 @@ mod joint_distribution {
         /// Functions whose expectations are compared.
         fn features(&self, points: &Points) -> Vec<f64> {
             let (mean, precision) =
-                (|k: usize| &self.gaussians[k].mean, |k: usize| self.gaussians[k].precision());
+                (|k: usize| self.gaussians[k].mean(), |k: usize| self.gaussians[k].precision());
             let q = |s: usize| &self.joints[s].position;
             let count = |k: usize| self.labels.iter().filter(|&&label| label == k).count() as f64;
             vec![
@@ -294,6 +296,11 @@ mod joint_distribution {
         }
     }
 
+    fn draw_joint(gaussians: &[Gaussian], edge: Edge, rng: &mut Stream) -> DVector<f64> {
+        let information = |k: usize| gaussians[k].information();
+        joints::draw_between(&information(edge.child), &information(edge.parent), rng)
+    }
+
     /// A draw from the joint density without the joints' mass, and the log of that mass.
     fn direct(prior: &NormalInverseWishart, settings: &Schema, rng: &mut Stream) -> (State, f64) {
         let gaussians: Vec<Gaussian> = (0..COMPONENTS).map(|_| prior.draw(rng)).collect();
@@ -310,10 +317,7 @@ mod joint_distribution {
             TREE.iter().map(|edge| -joints::collapsed_cost(between(edge).0, between(edge).1)).sum();
         let joints = TREE
             .iter()
-            .map(|edge| Joint {
-                edge: *edge,
-                position: joints::draw_between(between(edge).0, between(edge).1, rng),
-            })
+            .map(|edge| Joint { edge: *edge, position: draw_joint(&gaussians, *edge, rng) })
             .collect();
         let log_weights = weights.iter().map(|weight| weight.ln()).collect();
         (State { labels, gaussians, log_weights, joints }, log_mass)
@@ -337,8 +341,7 @@ mod joint_distribution {
             gaussians: state.gaussians,
             log_weights: state.log_weights,
             joints: state.joints,
-            statistics: vec![Statistics::new(2); COMPONENTS],
-            densities: vec![0.0; COMPONENTS * points.padded()],
+            statistics: Vec::new(),
         };
         mutant.draw_labels(&mut chain, rng);
         chain.count();
@@ -346,7 +349,7 @@ mod joint_distribution {
         chain.draw_gaussians(rng);
         chain.joints.extend(missing);
         chain.draw_weights(rng);
-        let positions = TREE.map(|edge| chain.draw_joint(edge, rng));
+        let positions = TREE.map(|edge| draw_joint(&chain.gaussians, edge, rng));
         chain.joints.iter_mut().zip(positions).for_each(|(joint, position)| joint.position = position);
         State {
             labels: chain.labels,
