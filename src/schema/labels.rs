@@ -31,8 +31,7 @@ pub fn draw(
     );
 }
 
-/// [`draw`], compiled once for each set of vector instructions. Lanes never mix and `mul_add` rounds once
-/// on any machine, so all of them give the same labels.
+/// [`draw`], by any vector instructions.
 #[inline(always)]
 fn draw_in_lanes(
     points: &Points,

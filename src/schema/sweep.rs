@@ -197,9 +197,10 @@ impl<'a> Chain<'a> {
     pub fn tree(&self) -> Vec<Edge> {
         match self.model {
             Model::DpgmmLj => self.joints.iter().map(|joint| joint.edge).collect(),
-            Model::Dpgmm => prim(&self.active(), |a, b| {
-                self.gaussians[a].mean().metric_distance(&self.gaussians[b].mean())
-            }),
+            Model::Dpgmm => {
+                let means: Vec<DVector<f64>> = self.gaussians.iter().map(Gaussian::mean).collect();
+                prim(&self.active(), |a, b| means[a].metric_distance(&means[b]))
+            }
         }
     }
 
