@@ -8,19 +8,21 @@ use std::process::ExitCode;
 use anyhow::{Context, Result, ensure};
 use bodyschema::agent::Agent;
 use bodyschema::body_map::ClassicalScaling;
-use bodyschema::claims::{self, Verdict};
+use bodyschema::claims::{Verdict, table};
 use bodyschema::distance::information_metric;
 use bodyschema::evaluate::{Score, Truth, parts, score};
+use bodyschema::plot;
 use bodyschema::quantise::quantise;
 use bodyschema::record::{npy, prepare_folder, tables};
-use bodyschema::reproduce::{self, Run, progress};
-use bodyschema::schema::{Model, Sample, infer};
+use bodyschema::report;
+use bodyschema::reproduce::{self, Experiment, Run, progress};
+use bodyschema::schema::{self, Model, Sample, infer};
 use bodyschema::sense::sense;
 use bodyschema::settings::{EdgeWeight, Keep, Scheme, Settings};
 use bodyschema::simulate::simulate;
 use bodyschema::statistics;
 use bodyschema::streams::stream;
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{Args, Parser, Subcommand};
 use serde::Serialize;
 
 /// Finds out from tactile information alone how many parts a body has, which sensor sits on which part,
@@ -85,8 +87,8 @@ enum Command {
     ///
     /// Reads coordinates (M x D) and writes into DIR: assignments.npy (int32, draws x M, component of each
     /// sensor), samples.csv (a row a draw: chain,parts,log_posterior, and with the truth given
-    /// ari,eligible,tree_correct) and trees.csv (chain,child,parent). With --keep all, a column `sweep`
-    /// follows the chain.
+    /// ari,eligible,tree_correct) and trees.csv (chain,child,parent and, of dpgmm-lj, the joint's place on the
+    /// body map, x1 ... xD). With --keep all, a column `sweep` follows the chain.
     Infer {
         /// Body map: a .npy file, M x D.
         body_map: PathBuf,
@@ -122,8 +124,10 @@ enum Command {
     /// Runs a whole experiment and judges the paper's claims; exit status 0 if all are reproduced, 1 if some
     /// are not, 2 on trouble.
     ///
-    /// Writes into DIR: claims.csv and claims.md (a row a claim), figures/*.csv (the data of the paper's
-    /// figures), samples.csv (a row a draw), simulation-N/ (distances, body map, truth) and manifest.json.
+    /// Writes into DIR: report.html (all of it in one page), claims.csv and claims.md (a row a claim),
+    /// figures/*.csv and *.svg (data and pictures of the paper's figures), samples.csv (a row a draw),
+    /// baselines.csv (a row a clustering), simulation-N/ (distances, body map, truth; in experiment 2
+    /// p-P/simulation-N/ without distances) and manifest.json.
     Reproduce {
         /// The experiment.
         #[arg(value_enum)]
@@ -143,6 +147,15 @@ enum Command {
         #[arg(long, value_name = "DIR")]
         out: PathBuf,
     },
+    /// Draws the pictures of an experiment again, each from its table, and makes the report around them.
+    ///
+    /// Reads DIR/figures/*.csv and writes an .svg beside each; then, where DIR holds a finished experiment,
+    /// report.html from its claims.csv and manifest.json.
+    Plot {
+        /// Folder of an experiment.
+        #[arg(value_name = "DIR")]
+        folder: PathBuf,
+    },
 }
 
 #[derive(Args)]
@@ -158,12 +171,6 @@ struct Common {
     file: SettingsFile,
     #[arg(long, value_name = "S", help = with_default("Master seed of all random numbers", paper().experiment.seed))]
     seed: Option<u64>,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-enum Experiment {
-    /// Section 5: body schema estimation at p = 0.9, d = 2 ... 15.
-    Exp1,
 }
 
 fn paper() -> Settings {
@@ -224,7 +231,8 @@ impl Arguments {
                 settings.validate()?;
                 run_infer(&body_map, model, labels.zip(tree), &settings, &out)?;
             }
-            Command::Reproduce { experiment: Experiment::Exp1, quick, simulations, common, jobs, out } => {
+            Command::Plot { folder } => run_plot(&folder)?,
+            Command::Reproduce { experiment, quick, simulations, common, jobs, out } => {
                 let mut settings = common.load(quick)?;
                 set(&mut settings.experiment.simulations, simulations);
                 settings.validate()?;
@@ -233,7 +241,13 @@ impl Arguments {
                     rayon::ThreadPoolBuilder::new().num_threads(jobs).build_global()?;
                 }
                 let settings_file = common.file.settings.as_deref();
-                return run_reproduce(&Run { settings: &settings, settings_file, quick, out: &out });
+                return run_reproduce(&Run {
+                    experiment,
+                    settings: &settings,
+                    settings_file,
+                    quick,
+                    out: &out,
+                });
             }
         }
         Ok(ExitCode::SUCCESS)
@@ -366,10 +380,8 @@ fn print_summary(
     ))?;
     let counts: Vec<f64> = samples.iter().map(|sample| parts(&sample.labels) as f64).collect();
     say(format!("parts: {}", line(&statistics::mean(&counts), "mean")))?;
-    let best = (0..samples.len())
-        .max_by(|&a, &b| samples[a].log_posterior.total_cmp(&samples[b].log_posterior))
-        .expect("there is at least one chain, which keeps at least one draw");
-    say(format!("draw of highest log posterior: chain {}, {} parts", samples[best].chain, counts[best]))?;
+    let best = schema::best(samples);
+    say(format!("draw of highest log posterior: chain {}, {} parts", best.chain, parts(&best.labels)))?;
     if let Some(scores) = scores {
         let aris: Vec<f64> = scores.iter().map(|score| score.ari).collect();
         say(format!("adjusted Rand index: {}", line(&statistics::mean(&aris), "mean")))?;
@@ -391,20 +403,39 @@ fn line(estimate: &statistics::Estimate, what: &str) -> String {
     }
 }
 
+fn run_plot(folder: &Path) -> Result<()> {
+    let figures = folder.join("figures");
+    let drawn = plot::draw(&figures)?;
+    ensure!(
+        !drawn.is_empty(),
+        "{}: has none of the tables fig04-agent.csv to fig11b-tree.csv",
+        figures.display()
+    );
+    say(format!("{} pictures in {}", drawn.len(), figures.display()))?;
+    if folder.join("manifest.json").exists() {
+        report::write(folder)?;
+        say(format!("report in {}", folder.join("report.html").display()))?;
+    }
+    Ok(())
+}
+
 fn run_reproduce(run: &Run) -> Result<ExitCode> {
-    let Settings { agent, skin, experiment, .. } = run.settings;
-    let sensors = Agent::new(agent, skin).sites.len();
-    let largest = *experiment.dimensions.last().expect("validated as not empty");
+    let Settings { agent, skin, .. } = run.settings;
+    let (largest, sensors) = (run.largest_dimension(), Agent::new(agent, skin).sites.len());
+    let setting = match run.experiment {
+        Experiment::Exp1 => "experiment.dimensions",
+        Experiment::Exp2 => "experiment.dimension",
+    };
     ensure!(
         largest < sensors,
-        "setting `experiment.dimensions` goes up to {largest}, but {sensors} sensors span fewer"
+        "setting `{setting}` goes up to {largest}, but {sensors} sensors span fewer dimensions"
     );
     prepare_folder(run.out)?;
-    let judged = reproduce::experiment_1(run)?;
+    let judged = reproduce::reproduce(run)?;
     say(format!("{}\n", reproduce::preamble(run)))?;
-    say(format!("{}\n", claims::terminal_table(&judged)))?;
-    say(format!("All files are in {}; claims.md says where each value was found.", run.out.display()))?;
-    for line in judged.iter().filter_map(claims::comparison) {
+    say(format!("{}\n", table::terminal_table(&judged)))?;
+    say(format!("All files are in {}; open report.html there.", run.out.display()))?;
+    for line in judged.iter().filter_map(table::comparison) {
         say(line)?;
     }
     let all = judged.iter().all(|judged| judged.verdict == Verdict::Reproduced);

@@ -114,7 +114,7 @@ mod tests {
 
     fn sample(labels: &[usize], edges: &[(usize, usize)]) -> Sample {
         let tree = edges.iter().map(|&(child, parent)| Edge { child, parent }).collect();
-        Sample { chain: 0, sweep: 1, labels: labels.to_vec(), tree, log_posterior: 0.0 }
+        Sample { chain: 0, sweep: 1, labels: labels.to_vec(), tree, joints: Vec::new(), log_posterior: None }
     }
 
     #[test]

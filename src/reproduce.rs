@@ -3,16 +3,23 @@
 use std::path::Path;
 use std::time::{Duration, Instant, SystemTime};
 
+use clap::ValueEnum;
 use indicatif::{ProgressBar, ProgressStyle};
+use serde::{Deserialize, Serialize};
 use serde_json::json;
 
-use crate::claims::{self, Judged};
-use crate::figures::{Conditions, write_figures};
-use crate::pipeline::{self, Record, StageError};
+use crate::agent::Agent;
+use crate::claims::{self, Evidence, Judged, table};
+use crate::conditions::{Conditions, baseline_estimates};
+use crate::figures::Figures;
+use crate::pipeline::{self, BaselineRecord, MappedBody, Record, StageError};
+use crate::plot;
 use crate::record::{FileError, npy, sha256, tables, write_text};
-use crate::schema::Model;
-use crate::settings::Settings;
-use crate::simulate::world;
+use crate::report;
+use crate::schema::{Model, Sample};
+use crate::settings::{Experiment as ExperimentSettings, Settings};
+use crate::simulate::{simulate, world};
+use crate::streams::stream;
 
 /// An experiment that could not be finished.
 #[derive(Debug, thiserror::Error)]
@@ -27,6 +34,8 @@ pub enum ReproduceError {
 /// How an experiment is run.
 #[derive(Debug)]
 pub struct Run<'a> {
+    /// Which one.
+    pub experiment: Experiment,
     /// Its settings.
     pub settings: &'a Settings,
     /// The user's settings file, for the manifest.
@@ -37,73 +46,82 @@ pub struct Run<'a> {
     pub out: &'a Path,
 }
 
-/// Experiment 1 (section 5): all simulations, dimensions and both mixtures. Returns the judged claims.
+/// An experiment of the paper.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ValueEnum)]
+#[serde(rename_all = "kebab-case")]
+pub enum Experiment {
+    /// Section 5: body schema estimation over the dimensions d of the body map.
+    Exp1,
+    /// Section 6: body schema estimation over the ratios p of motor coordination.
+    Exp2,
+}
+
+/// Runs an experiment: all its simulations, conditions and figures. Returns the judged claims.
 ///
 /// # Errors
 /// If a stage fails or a file cannot be written.
-pub fn experiment_1(run: &Run) -> Result<Vec<Judged>, ReproduceError> {
+pub fn reproduce(run: &Run) -> Result<Vec<Judged>, ReproduceError> {
     let (started, clock) = (SystemTime::now(), Instant::now());
-    let Run { settings, out, quick, .. } = *run;
-    let mut outputs = Vec::new();
-    let mut records: Vec<Record> = Vec::new();
+    let Run { experiment, settings, out, quick, .. } = *run;
     // What an earlier run found must not stand beside what this one is about to write.
-    for name in ["claims.csv", "claims.md", "manifest.json"] {
+    for name in ["claims.csv", "claims.md", "report.html", "manifest.json"] {
         let path = out.join(name);
         if path.exists() {
             std::fs::remove_file(&path)
                 .map_err(|error| FileError::new(&path, format!("cannot be replaced: {error}")))?;
         }
     }
-    let (mut mapping, mut inferring) = (Duration::ZERO, Duration::ZERO);
-    let mut bodies = Vec::new();
-
-    for simulation in 1..=settings.experiment.simulations {
-        let begun = Instant::now();
-        let bar = progress(settings.samples() as u64 + 1, format!("simulation {simulation}: body map"));
-        let body = pipeline::map_body(settings, simulation, &bar)?;
-        bar.finish_and_clear();
-        mapping += begun.elapsed();
-        bodies.push(json!({
-            "simulation": simulation,
-            "constant_sensors": body.constant_sensors,
-            "positive_eigenvalues": body.scaling.positive(),
-            "negative_eigenvalue_share": body.scaling.negative_share(),
-        }));
-        let largest = *settings.experiment.dimensions.last().expect("validated as not empty");
-        let file = |name: &str| format!("simulation-{simulation}/{name}");
-        let [distance, map, labels, tree] =
-            ["distance.npy", "body-map.npy", "labels.csv", "tree.csv"].map(file);
-        npy::write_distances(&out.join(&distance), &body.distances)?;
-        let coordinates = body.scaling.coordinates(largest).map_err(StageError::from)?;
-        npy::write_body_map(&out.join(&map), &coordinates)?;
-        tables::write_truth(&out.join(&labels), &out.join(&tree), &body.truth)?;
-        outputs.extend([distance, map, labels, tree]);
-
-        let begun = Instant::now();
-        let conditions = settings.experiment.dimensions.len() * Model::ALL.len();
-        let bar = progress(
-            (conditions * settings.schema.chains) as u64,
-            format!("simulation {simulation}: chains of the body schema"),
-        );
-        for &dimension in &settings.experiment.dimensions {
-            for model in Model::ALL {
-                records
-                    .extend(pipeline::infer_and_score(&body, dimension, model, settings, simulation, &bar)?);
+    let folder = out.join("figures");
+    let mut figures = Figures::new(&folder)?;
+    let mut collected = Collected::default();
+    match experiment {
+        Experiment::Exp1 => {
+            body_and_movement(settings, &mut figures)?;
+            for simulation in 1..=settings.experiment.simulations {
+                let body = collected.map_body(run, simulation, "")?;
+                collected.over_dimensions(run, &body, simulation, &mut figures)?;
             }
         }
-        bar.finish_and_clear();
-        inferring += begun.elapsed();
+        Experiment::Exp2 => {
+            let mut settings = settings.clone();
+            for &coordination in &run.settings.experiment.coordinations {
+                settings.motion.coordination = coordination;
+                let run = Run { settings: &settings, ..*run };
+                for simulation in 1..=settings.experiment.simulations {
+                    let place = format!("p-{coordination}/");
+                    let body = collected.map_body(&run, simulation, &place)?;
+                    let (d, model) = (settings.experiment.dimension, Model::DpgmmLj);
+                    let bar =
+                        chains_bar(&settings, 1, &format!("p = {coordination}, simulation {simulation}"));
+                    collected.infer(&run, &body, d, model, simulation, &bar)?;
+                    bar.finish_and_clear();
+                }
+            }
+        }
     }
 
+    let Collected { records, baselines, bodies, mut outputs, mapping, inferring } = collected;
     tables::write_rows(&out.join("samples.csv"), &records)?;
-    let conditions = Conditions::new(&records);
-    let figures = write_figures(&out.join("figures"), &conditions)?;
-    let judged: Vec<Judged> =
-        claims::published().into_iter().map(|claim| claims::judge(claim, &conditions)).collect();
-    claims::write_csv(&out.join("claims.csv"), &judged)?;
-    claims::write_markdown(&out.join("claims.md"), &preamble(run), &judged)?;
-    outputs.extend(figures.into_iter().map(|name| format!("figures/{name}")));
-    outputs.extend(["samples.csv", "claims.csv", "claims.md"].map(str::to_owned));
+    outputs.push("samples.csv".to_owned());
+    let Settings { experiment: ExperimentSettings { simulations, seed, .. }, .. } = *settings;
+    let conditions = Conditions::new(records, simulations, seed);
+    let evidence = Evidence { conditions, baselines: baseline_estimates(&baselines) };
+    let best = evidence.conditions.best();
+    match experiment {
+        Experiment::Exp1 => {
+            tables::write_rows(&out.join("baselines.csv"), &baselines)?;
+            outputs.push("baselines.csv".to_owned());
+            figures.baselines(&evidence.baselines)?;
+            figures.by_dimension(&evidence.conditions, &best)?;
+        }
+        Experiment::Exp2 => figures.by_coordination(&evidence.conditions, &best)?,
+    }
+    let judged = claims::judge(experiment, &evidence);
+    tables::write_rows(&out.join("claims.csv"), table::rows(&judged))?;
+    table::write_markdown(&out.join("claims.md"), &preamble(run), &judged)?;
+    let pictures = plot::draw(&folder)?;
+    outputs.extend(figures.names.into_iter().chain(pictures).map(|name| format!("figures/{name}")));
+    outputs.extend(["claims.csv", "claims.md"].map(str::to_owned));
 
     let times = json!({
         "started": humantime::format_rfc3339_seconds(started).to_string(),
@@ -123,7 +141,9 @@ pub fn experiment_1(run: &Run) -> Result<Vec<Judged>, ReproduceError> {
         "program": format!("bodyschema {}", env!("CARGO_PKG_VERSION")),
         "revision": env!("BODYSCHEMA_REVISION"),
         "command": std::env::args().collect::<Vec<_>>(),
-        "experiment": "exp1",
+        "experiment": experiment,
+        "summary": preamble(run),
+        "headline": judged.iter().filter_map(table::comparison).collect::<Vec<_>>(),
         "quick": quick,
         "seed": settings.experiment.seed,
         "streams": "SHA-256 of (seed, simulation, chain, stage) seeds xoshiro256++",
@@ -141,29 +161,173 @@ pub fn experiment_1(run: &Run) -> Result<Vec<Judged>, ReproduceError> {
     });
     let text = serde_json::to_string_pretty(&manifest).expect("a JSON value can be written");
     write_text(&out.join("manifest.json"), &(text + "\n"))?;
+    report::write(out)?;
     Ok(judged)
+}
+
+/// What the simulations of an experiment have given so far.
+#[derive(Default)]
+struct Collected {
+    records: Vec<Record>,
+    baselines: Vec<BaselineRecord>,
+    /// What the manifest says of each body.
+    bodies: Vec<serde_json::Value>,
+    outputs: Vec<String>,
+    mapping: Duration,
+    inferring: Duration,
+}
+
+impl Collected {
+    /// Stages 1 to 5 of one simulation; its files go to the folder `place` of the run.
+    fn map_body(&mut self, run: &Run, simulation: usize, place: &str) -> Result<MappedBody, ReproduceError> {
+        let Run { settings, out, .. } = *run;
+        let begun = Instant::now();
+        let p = settings.motion.coordination;
+        let bar =
+            progress(settings.samples() as u64 + 1, format!("p = {p}, simulation {simulation}: body map"));
+        let body = pipeline::map_body(settings, simulation, &bar)?;
+        bar.finish_and_clear();
+        self.bodies.push(json!({
+            "coordination": p,
+            "simulation": simulation,
+            "constant_sensors": body.constant_sensors,
+            "positive_eigenvalues": body.scaling.positive(),
+            "negative_eigenvalue_share": body.scaling.negative_share(),
+        }));
+        let mut file = |name: &str| {
+            self.outputs.push(format!("{place}simulation-{simulation}/{name}"));
+            out.join(&self.outputs[self.outputs.len() - 1])
+        };
+        // For each p of experiment 2, distances would come to a quarter of a gigabyte; its body maps hold all
+        // that the inference sees.
+        if run.experiment == Experiment::Exp1 {
+            npy::write_distances(&file("distance.npy"), &body.distances)?;
+        }
+        tables::write_truth(&file("labels.csv"), &file("tree.csv"), &body.truth)?;
+        if body.scaling.positive() > 0 {
+            let coordinates = body.scaling.coordinates(run.largest_dimension()).map_err(StageError::from)?;
+            npy::write_body_map(&file("body-map.npy"), &coordinates)?;
+        }
+        self.mapping += begun.elapsed();
+        Ok(body)
+    }
+
+    /// Stages 6 and 7 of one condition. Returns the draw of highest log posterior.
+    fn infer(
+        &mut self,
+        run: &Run,
+        body: &MappedBody,
+        dimension: usize,
+        model: Model,
+        simulation: usize,
+        bar: &ProgressBar,
+    ) -> Result<Sample, ReproduceError> {
+        let begun = Instant::now();
+        let inference = pipeline::infer_and_score(body, dimension, model, run.settings, simulation, bar)?;
+        self.records.extend(inference.records);
+        self.inferring += begun.elapsed();
+        Ok(inference.best)
+    }
+
+    /// Experiment 1 of one body: every d, by both mixtures and by the clusterings; and figure 6.
+    fn over_dimensions(
+        &mut self,
+        run: &Run,
+        body: &MappedBody,
+        simulation: usize,
+        figures: &mut Figures,
+    ) -> Result<(), ReproduceError> {
+        let settings = run.settings;
+        let dimensions = &settings.experiment.dimensions;
+        let bar =
+            chains_bar(settings, dimensions.len() * Model::ALL.len(), &format!("simulation {simulation}"));
+        for &d in dimensions {
+            self.baselines.extend(pipeline::cluster_and_score(body, d, settings, simulation)?);
+            for model in Model::ALL {
+                let best = self.infer(run, body, d, model, simulation, &bar)?;
+                if simulation == 1
+                    && model == Model::DpgmmLj
+                    && (2..=3).contains(&d)
+                    && best.log_posterior.is_some()
+                {
+                    let map = body.scaling.coordinates(d).map_err(StageError::from)?;
+                    figures.map(&map, &body.truth.labels, &best)?;
+                }
+            }
+        }
+        bar.finish_and_clear();
+        Ok(())
+    }
+}
+
+/// Figures 4 and 5: the agent, and how it moves at first for each p of experiment 2.
+fn body_and_movement(settings: &Settings, figures: &mut Figures) -> Result<(), ReproduceError> {
+    // Some twenty epochs, s, and a sample every so often, s.
+    const SHOWN: f64 = 100.0;
+    const EVERY: f64 = 0.2;
+    let agent = Agent::new(&settings.agent, &settings.skin);
+    let mut settings = settings.clone();
+    settings.physics.duration = settings.physics.duration.min(SHOWN.max(settings.sense.interval));
+    let mut trajectories = Vec::new();
+    for coordination in settings.experiment.coordinations.clone() {
+        settings.motion.coordination = coordination;
+        let mut rng = stream(settings.experiment.seed, 1, "motion", 0);
+        let trajectory =
+            simulate(&agent, &settings, &mut rng, &ProgressBar::hidden()).map_err(StageError::from)?;
+        trajectories.push((coordination, trajectory));
+    }
+    let rest = &trajectories[0].1.poses[..agent.parts.len()];
+    figures.agent(&agent, rest, settings.agent.part_length)?;
+    let every = (EVERY / settings.sense.interval).round().max(1.0) as usize;
+    figures.angles(&trajectories, settings.sense.interval, every)?;
+    Ok(())
+}
+
+fn chains_bar(settings: &Settings, conditions: usize, what: &str) -> ProgressBar {
+    progress((conditions * settings.schema.chains) as u64, format!("{what}: chains of the body schema"))
+}
+
+impl Run<'_> {
+    /// The largest d of its body maps.
+    pub fn largest_dimension(&self) -> usize {
+        let settings = &self.settings.experiment;
+        match self.experiment {
+            Experiment::Exp1 => *settings.dimensions.last().expect("validated as not empty"),
+            Experiment::Exp2 => settings.dimension,
+        }
+    }
 }
 
 /// What stands above the table of claims.
 pub fn preamble(run: &Run) -> String {
     let Settings { motion, schema, experiment, .. } = run.settings;
+    let what = match run.experiment {
+        Experiment::Exp1 => {
+            format!("Experiment 1: p = {}, d = {}", motion.coordination, list(&experiment.dimensions))
+        }
+        Experiment::Exp2 => {
+            format!("Experiment 2: p = {}, d = {}", list(&experiment.coordinations), experiment.dimension)
+        }
+    };
     let caution = if run.quick { " Quick run: its numbers are no replication." } else { "" };
     let scope = match experiment.simulations {
         1 => "Intervals are over the chains of this one simulation; another can differ by more.",
-        _ => {
-            "Intervals pool the chains of all simulations, which differ more than chains do: they are too narrow."
-        }
+        _ => "Intervals are over simulations (bootstrap).",
     };
     format!(
-        "Experiment 1: p = {}, {} simulation(s), {} chains of {} sweeps for each dimension and model, seed {}, \
-         revision {}.{caution} {scope}",
-        motion.coordination,
+        "{what}; {} simulation(s), {} chains of {} sweeps for each condition, seed {}, revision {}.{caution} {scope} \
+         Rows marked extension count, of each simulation, only the draw of highest log posterior, which the paper does \
+         not.",
         experiment.simulations,
         schema.chains,
         schema.sweeps,
         experiment.seed,
         env!("BODYSCHEMA_REVISION"),
     )
+}
+
+fn list<T: ToString>(values: &[T]) -> String {
+    values.iter().map(T::to_string).collect::<Vec<_>>().join(", ")
 }
 
 /// A progress bar on standard error, which shows only on a terminal.

@@ -9,7 +9,8 @@ use clap::ValueEnum;
 use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
 
-const PAPER: &str = include_str!("../reproduce/paper.toml");
+/// `reproduce/paper.toml` itself, whose comments say where each value is from.
+pub const PAPER: &str = include_str!("../reproduce/paper.toml");
 const QUICK: &str = include_str!("../reproduce/quick.toml");
 
 /// All settings of a run. Field by field the twin of `reproduce/paper.toml`.
@@ -30,6 +31,8 @@ pub struct Settings {
     pub quantise: Quantise,
     /// The DPGMM-LJ and its sampler (section 3).
     pub schema: Schema,
+    /// The clusterings to compare with (section 5.2).
+    pub baselines: Baselines,
     /// What counts as a success (section 5.2).
     pub evaluate: Evaluate,
     /// The conditions that are repeated.
@@ -204,12 +207,26 @@ pub struct Evaluate {
     pub eligible_ari: f64,
 }
 
+/// The clusterings of figure 8a, which need the number of clusters.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Baselines {
+    /// Numbers of clusters.
+    pub clusters: Vec<usize>,
+    /// Starts of k-means and of GMM, of which the best is kept.
+    pub restarts: usize,
+}
+
 /// The conditions that an experiment repeats.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Experiment {
-    /// d of the body maps.
+    /// d of the body maps of experiment 1.
     pub dimensions: Vec<usize>,
+    /// p of experiment 2.
+    pub coordinations: Vec<f64>,
+    /// d of the body maps of experiment 2.
+    pub dimension: usize,
     /// Independent simulations.
     pub simulations: usize,
     /// Master seed.
@@ -361,7 +378,31 @@ impl Settings {
                 && dimensions.windows(2).all(|pair| pair[0] < pair[1]),
             "a rising list of dimensions, each at least 1",
         )?;
-        count("experiment.simulations", self.experiment.simulations)
+        let coordinations = &self.experiment.coordinations;
+        check(
+            "experiment.coordinations",
+            format!("{coordinations:?}"),
+            !coordinations.is_empty()
+                && coordinations.iter().all(|p| (0.0..=1.0).contains(p))
+                && coordinations.windows(2).all(|pair| pair[0] < pair[1]),
+            "a rising list of probabilities, 0 to 1",
+        )?;
+        count("experiment.dimension", self.experiment.dimension)?;
+        let clusters = &self.baselines.clusters;
+        check(
+            "baselines.clusters",
+            format!("{clusters:?}"),
+            clusters.iter().all(|&clusters| (1..=sensors).contains(&clusters)),
+            "a list of numbers from 1 to the number of sensors",
+        )?;
+        check(
+            "baselines.restarts",
+            self.baselines.restarts,
+            (1..=10_000).contains(&self.baselines.restarts),
+            "1 to 10000",
+        )?;
+        let simulations = self.experiment.simulations;
+        check("experiment.simulations", simulations, (1..=10_000).contains(&simulations), "1 to 10000")
     }
 
     /// Physics steps between two samples.

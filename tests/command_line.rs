@@ -21,6 +21,7 @@ chains = 6
 sweeps = 60
 [experiment]
 dimensions = [2, 4]
+simulations = 2
 seed = 11
 ";
 
@@ -73,7 +74,7 @@ fn stages_by_hand_repeat_the_experiment() {
     assert_eq!(header(&at("body/labels.csv")), "sensor,part");
     assert_eq!(header(&at("body/tree.csv")), "child,parent");
     assert_eq!(header(&at("schema/samples.csv")), "chain,parts,log_posterior,ari,eligible,tree_correct");
-    assert_eq!(header(&at("schema/trees.csv")), "chain,child,parent");
+    assert_eq!(header(&at("schema/trees.csv")), "chain,child,parent,x1,x2,x3,x4");
     assert_eq!(fs::read_to_string(at("body/joint-angles.csv")).unwrap().lines().count(), 1 + 15_001);
     let tactile = npy::read_tactile(&at("body/tactile.npy")).unwrap();
     assert_eq!((tactile.samples, tactile.sensors()), (15_000, 120));
@@ -90,7 +91,7 @@ fn stages_by_hand_repeat_the_experiment() {
         rows(&at("schema/samples.csv")).iter().map(|row| row["log_posterior"].clone()).collect();
     let whole: Vec<_> = rows(&at("exp1/samples.csv"))
         .iter()
-        .filter(|row| row["dimension"] == "4" && row["model"] == "dpgmm-lj")
+        .filter(|row| row["simulation"] == "1" && row["dimension"] == "4" && row["model"] == "dpgmm-lj")
         .map(|row| row["log_posterior"].clone())
         .collect();
     assert_eq!(by_hand, whole);
@@ -107,6 +108,8 @@ fn an_experiment_is_the_same_on_any_number_of_threads_and_complete() {
         let screen = String::from_utf8(output.stdout).unwrap();
         let last = screen.lines().last().unwrap();
         assert!(last.contains("published 84.6 % | reproduced"), "{last}");
+        let report = fs::read_to_string(out.join("report.html")).unwrap();
+        assert!(report.contains("published 84.6 % | reproduced"));
 
         let manifest: serde_json::Value =
             serde_json::from_str(&fs::read_to_string(out.join("manifest.json")).unwrap()).unwrap();
@@ -134,20 +137,21 @@ fn an_experiment_is_the_same_on_any_number_of_threads_and_complete() {
     let out = folder.path().join("jobs-1");
     assert_eq!(
         header(&out.join("claims.csv")),
-        "id,figure,statement,published,reproduced,n,low,high,tolerance,verdict"
+        "id,figure,place,statement,published,reproduced,n,low,high,simulations,lowest,highest,accepted,verdict,found"
     );
     let claims = rows(&out.join("claims.csv"));
     assert_eq!((claims[0]["id"].as_str(), claims[0]["published"].as_str()), ("tree-accuracy", "84.6 %"));
     // d = 14 was not run, so there is no rate, and that is what the table says.
     assert_eq!((claims[0]["reproduced"].as_str(), claims[0]["verdict"].as_str()), ("", "not testable"));
-    for name in ["fig07-parts.csv", "fig08b-ari.csv", "fig10-tree.csv"] {
+    for name in ["fig07-parts.csv", "fig08a-ari-baselines.csv", "fig08b-ari.csv", "fig10b-tree.csv"] {
         assert!(!rows(&out.join("figures").join(name)).is_empty(), "{name}");
     }
     let counted: usize = rows(&out.join("figures/fig07-parts.csv"))
         .iter()
+        .filter(|row| row["counting"] == "all-draws")
         .map(|row| row["count"].parse::<usize>().unwrap())
         .sum();
-    assert_eq!(counted, 2 * 6, "two dimensions, six chains");
+    assert_eq!(counted, 2 * 2 * 6, "two dimensions, two simulations, six chains");
 }
 
 /// Five Gaussian clusters in a row, far apart, so that any working sampler finds them.

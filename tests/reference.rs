@@ -72,6 +72,21 @@ struct Intervals {
     wilson: Vec<Wilson>,
     newcombe: Vec<Newcombe>,
     mann_whitney: Vec<MannWhitney>,
+    kruskal: Vec<Kruskal>,
+    student: Vec<Student>,
+}
+
+#[derive(Deserialize)]
+struct Kruskal {
+    groups: Vec<Vec<f64>>,
+    p: f64,
+}
+
+#[derive(Deserialize)]
+struct Student {
+    values: Vec<f64>,
+    interval: (f64, f64),
+    quartiles: [f64; 3],
 }
 
 #[derive(Deserialize)]
@@ -209,19 +224,39 @@ fn marginal_likelihoods_agree_with_scipy_s_multivariate_t() {
 
 #[test]
 fn intervals_and_tests_agree_with_statsmodels_and_scipy() {
-    let Intervals { wilson, newcombe, mann_whitney } = reference().statistics;
+    let Intervals { wilson, newcombe, mann_whitney, kruskal, student } = reference().statistics;
     for Wilson { k, n, interval } in wilson {
         let found = statistics::rate(k, n).interval.unwrap();
         close(found.0, interval.0, 1e-9);
         close(found.1, interval.1, 1e-9);
     }
     for Newcombe { counts: (k_1, n_1, k_2, n_2), interval } in newcombe {
-        let found = statistics::rate_difference((k_1, n_1), (k_2, n_2));
+        let reproduced = statistics::rate(k_1, n_1);
+        let (value, interval_1) = reproduced.value.zip(reproduced.interval).unwrap();
+        let found = statistics::rate_difference(value, interval_1, (k_2, n_2));
         close(found.0, interval.0, 1e-9);
         close(found.1, interval.1, 1e-9);
     }
     for MannWhitney { first, second, p } in mann_whitney {
         close(statistics::mann_whitney(&first, &second), p, 1e-9);
+    }
+    for Kruskal { groups, p } in kruskal {
+        close(statistics::kruskal_wallis(&groups).unwrap(), p, 1e-9);
+        let mut moved = groups.clone();
+        let value = moved[0].pop().unwrap();
+        moved[1].push(value);
+        let twin = statistics::kruskal_wallis(&moved).unwrap();
+        assert!((twin - p).abs() > 1e-3, "a value in another group is seen");
+    }
+    for Student { values, interval, quartiles } in student {
+        let found = statistics::mean(&values).interval.unwrap();
+        close(found.0, interval.0, 1e-9);
+        close(found.1, interval.1, 1e-9);
+        let mut sorted = values;
+        sorted.sort_by(f64::total_cmp);
+        for (share, expected) in [0.25, 0.5, 0.75].into_iter().zip(quartiles) {
+            close(statistics::quantile(&sorted, share), expected, 1e-12);
+        }
     }
 }
 

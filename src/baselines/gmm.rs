@@ -9,6 +9,7 @@ use nalgebra::{DMatrix, DVector};
 use super::k_means::descend;
 use crate::body_map::BodyMap;
 use crate::schema::gaussian::Gaussian;
+use crate::schema::labels::log_densities;
 use crate::schema::points::Points;
 use crate::streams::Stream;
 
@@ -98,7 +99,7 @@ fn climb(points: &Points, ridge: f64, labels: &[usize]) -> Option<MixtureFit> {
 
 /// The components of greatest likelihood given each one's share in each point.
 fn maximise(points: &Points, responsibilities: &[Vec<f64>], ridge: f64) -> Option<Vec<Component>> {
-    let weights = responsibilities.iter().map(|shares| shares[..points.count].iter().sum::<f64>());
+    let weights = responsibilities.iter().map(|shares| shares.iter().sum::<f64>());
     responsibilities
         .iter()
         .zip(weights)
@@ -143,11 +144,11 @@ fn moments(points: &Points, shares: &[f64], weight: f64) -> (DVector<f64>, DMatr
 
 /// Each component's share in each point, and the log likelihood of all points.
 fn expect(points: &Points, components: &[Component]) -> (Vec<Vec<f64>>, f64) {
-    let mut shares = vec![vec![0.0; points.padded()]; components.len()];
-    for (shares, component) in shares.iter_mut().zip(components) {
-        points.log_densities(&component.gaussian, shares);
-        shares.iter_mut().for_each(|density| *density += component.log_weight);
-    }
+    let weighted = |component: &Component| -> Vec<f64> {
+        let densities = log_densities(points, &component.gaussian).into_iter();
+        densities.map(|density| density + component.log_weight).collect()
+    };
+    let mut shares: Vec<Vec<f64>> = components.iter().map(weighted).collect();
     let mut log_likelihood = 0.0;
     for i in 0..points.count {
         // Relative to the largest, which does not underflow.

@@ -88,7 +88,11 @@ fn check_tree(truth: &Truth) -> Result<(), String> {
     Ok(())
 }
 
-fn read_rows<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>, FileError> {
+/// Reads rows by their header.
+///
+/// # Errors
+/// If the file cannot be read, or a line is not such a row.
+pub fn read_rows<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>, FileError> {
     let mut reader = csv::Reader::from_path(path)
         .map_err(|error| FileError::new(path, format!("cannot be read: {}", plain(&error))))?;
     let rows: Result<Vec<T>, _> = reader.deserialize().collect();
@@ -131,22 +135,13 @@ struct SampleRow {
     #[serde(skip_serializing_if = "Option::is_none")]
     sweep: Option<usize>,
     parts: usize,
-    log_posterior: f64,
+    log_posterior: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     ari: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     eligible: Option<bool>,
     #[serde(skip_serializing_if = "Option::is_none")]
     tree_correct: Option<bool>,
-}
-
-#[derive(Serialize)]
-struct EdgeRow {
-    chain: usize,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    sweep: Option<usize>,
-    child: usize,
-    parent: usize,
 }
 
 /// Writes `samples.csv`, a row a draw: `chain`, `sweep` where a chain has several draws, `parts`,
@@ -172,17 +167,27 @@ pub fn write_samples(
     write_rows(path, rows)
 }
 
-/// Writes `trees.csv`, a row an edge; labels are those of the assignments.
+/// Writes `trees.csv`, a row an edge: `chain`, `sweep` where a chain has several draws, `child` and `parent`,
+/// labels as in the assignments, and, where the mixture has joints, `x1` … `xd`: the joint on the body map.
 pub fn write_trees(path: &Path, samples: &[Sample], keep: Keep) -> Result<(), FileError> {
-    let rows = samples.iter().flat_map(|sample| {
-        sample.tree.iter().map(move |edge| EdgeRow {
-            chain: sample.chain,
-            sweep: (keep == Keep::All).then_some(sample.sweep),
-            child: edge.child,
-            parent: edge.parent,
-        })
-    });
-    write_rows(path, rows)
+    let dims = samples.iter().flat_map(|sample| &sample.joints).next().map_or(0, Vec::len);
+    let sweep = keep == Keep::All;
+    write_whole(path, |file| {
+        let mut writer = csv::Writer::from_writer(file);
+        let names =
+            ["chain", "sweep", "child", "parent"].into_iter().filter(|name| *name != "sweep" || sweep);
+        writer.write_record(names.map(str::to_owned).chain((1..=dims).map(|k| format!("x{k}"))))?;
+        for sample in samples {
+            for (at, edge) in sample.tree.iter().enumerate() {
+                let numbers =
+                    [Some(sample.chain), sweep.then_some(sample.sweep), Some(edge.child), Some(edge.parent)];
+                let joint = sample.joints.get(at).into_iter().flatten();
+                let numbers = numbers.into_iter().flatten().map(|number| number.to_string());
+                writer.write_record(numbers.chain(joint.map(f64::to_string)))?;
+            }
+        }
+        writer.flush()
+    })
 }
 
 #[cfg(test)]

@@ -84,6 +84,22 @@ fn draw_in_lanes(
     }
 }
 
+/// log N(x_i; μ, Σ) of each point.
+pub fn log_densities(points: &Points, gaussian: &Gaussian) -> Vec<f64> {
+    let mut densities = Vec::with_capacity(points.count.next_multiple_of(BLOCK));
+    vectorised(
+        #[inline(always)]
+        || {
+            for block in points.blocks() {
+                let squares = squares(block, gaussian, &[f64::INFINITY; BLOCK]).expect("nothing is above");
+                densities.extend(squares.map(|square| gaussian.log_peak - 0.5 * square));
+            }
+        },
+    );
+    densities.truncate(points.count);
+    densities
+}
+
 /// |P (x − μ)|² for each point of a block; none once it is known to be above the limits of all of them.
 #[inline(always)]
 fn squares(block: &[Block], gaussian: &Gaussian, limits: &Block) -> Option<Block> {

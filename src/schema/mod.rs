@@ -56,8 +56,31 @@ pub struct Sample {
     pub labels: Vec<usize>,
     /// The tree over the active components.
     pub tree: Vec<Edge>,
-    /// log p(x, z); see [`Chain::log_posterior`].
-    pub log_posterior: f64,
+    /// q of each edge of the tree, on the body map. Empty for a DPGMM, which has no joints.
+    pub joints: Vec<Vec<f64>>,
+    /// log p(x, z), see [`Chain::log_posterior`]; none without a body map.
+    pub log_posterior: Option<f64>,
+}
+
+/// The draw of highest log posterior, of at least one.
+pub fn best(samples: &[Sample]) -> &Sample {
+    samples
+        .iter()
+        .reduce(|kept, next| if next.log_posterior > kept.log_posterior { next } else { kept })
+        .expect("there is at least one chain, which keeps at least one draw")
+}
+
+/// What each chain says of sensors that do not differ: all of them are on one part.
+pub fn one_part(sensors: usize, settings: &Schema) -> Vec<Sample> {
+    let sample = |chain| Sample {
+        chain,
+        sweep: settings.sweeps,
+        labels: vec![0; sensors],
+        tree: Vec::new(),
+        joints: Vec::new(),
+        log_posterior: None,
+    };
+    (0..settings.chains).map(sample).collect()
 }
 
 /// Runs `settings.chains` independent chains and returns the draws that are kept, by chain and sweep.
@@ -96,7 +119,8 @@ pub fn infer(
                         sweep,
                         labels: state.labels.clone(),
                         tree: state.tree(),
-                        log_posterior: state.log_posterior(),
+                        joints: state.joints.iter().map(|joint| points.uncentred(&joint.position)).collect(),
+                        log_posterior: Some(state.log_posterior()),
                     });
                 }
             }

@@ -1,6 +1,6 @@
 //! Body map → the points x_i of the mixture, laid out for the sampler's two inner loops.
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 
 use super::bordered::{Bordered, Chunk, LANES, chunks};
 use crate::body_map::BodyMap;
@@ -15,6 +15,8 @@ pub struct Points {
     pub count: usize,
     /// d.
     pub dims: usize,
+    /// Mean of the body map, which is the origin here.
+    centre: Vec<f64>,
     /// n rows (x_i, 1), padded to whole chunks.
     rows: Vec<Chunk>,
     /// ⌈n / BLOCK⌉ × d: coordinate k of a block of points; the last one is padded.
@@ -26,9 +28,15 @@ impl Points {
     pub fn new(map: &BodyMap) -> Self {
         let (count, dims) = (map.points(), map.dims);
         let mean = |k: usize| map.coordinates.iter().skip(k).step_by(dims).sum::<f64>() / count as f64;
-        let means: Vec<f64> = (0..dims).map(mean).collect();
-        let centred = |row: &[f64]| row.iter().zip(&means).map(|(x, m)| x - m).collect::<Vec<_>>();
-        Self::from_rows(dims, map.coordinates.chunks_exact(dims).flat_map(centred).collect())
+        let centre: Vec<f64> = (0..dims).map(mean).collect();
+        let centred = |row: &[f64]| row.iter().zip(&centre).map(|(x, m)| x - m).collect::<Vec<_>>();
+        let rows = map.coordinates.chunks_exact(dims).flat_map(centred).collect();
+        Self { centre: centre.clone(), ..Self::from_rows(dims, rows) }
+    }
+
+    /// Coordinates on the body map of a position among the centred points.
+    pub fn uncentred(&self, position: &DVector<f64>) -> Vec<f64> {
+        position.iter().zip(&self.centre).map(|(x, mean)| x + mean).collect()
     }
 
     /// Takes points as they are, by rows.
@@ -41,7 +49,7 @@ impl Points {
             }
         }
         let rows = rows.chunks_exact(dims).flat_map(bordered).collect();
-        Self { count, dims, rows, blocks }
+        Self { count, dims, centre: vec![0.0; dims], rows, blocks }
     }
 
     /// Point i.

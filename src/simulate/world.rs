@@ -23,6 +23,14 @@ pub struct Pose {
     pub rotation: [Vector3; 3],
 }
 
+impl Pose {
+    /// Where in the world a point of the part is, given in the part's frame, m.
+    pub fn place(&self, point: Vector3) -> Vector3 {
+        [0, 1, 2]
+            .map(|i| self.position[i] + self.rotation[i].iter().zip(point).map(|(r, x)| r * x).sum::<f64>())
+    }
+}
+
 /// A body whose motion cannot be followed with the present settings.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error(

@@ -116,7 +116,24 @@ def statistics():
         first, second = np.round(rng.normal(size=n), 1), np.round(rng.normal(size=m) + shift, 1)
         p = scipy.stats.mannwhitneyu(first, second, method="asymptotic").pvalue
         mann_whitney.append({"first": first.tolist(), "second": second.tolist(), "p": float(p)})
-    return {"wilson": wilson, "newcombe": newcombe, "mann_whitney": mann_whitney}
+    own = np.random.default_rng(20170104)  # the values of other tests stay as they are
+    kruskal = []
+    for sizes, shift in [([5] * 7, 0.0), ([5, 4, 6], 0.8), ([8, 8], 0.5)]:
+        groups = [np.round(own.normal(size=n) + shift * i, 1) for i, n in enumerate(sizes)]
+        kruskal.append({"groups": [g.tolist() for g in groups], "p": float(scipy.stats.kruskal(*groups).pvalue)})
+    student = []
+    for n in [2, 5, 100]:
+        values = own.normal(size=n)
+        low, high = scipy.stats.t.interval(0.95, n - 1, loc=values.mean(), scale=scipy.stats.sem(values))
+        quartiles = np.quantile(values, [0.25, 0.5, 0.75]).tolist()
+        student.append({"values": values.tolist(), "interval": [float(low), float(high)], "quartiles": quartiles})
+    return {
+        "wilson": wilson,
+        "newcombe": newcombe,
+        "mann_whitney": mann_whitney,
+        "kruskal": kruskal,
+        "student": student,
+    }
 
 
 def baselines():

@@ -1,0 +1,166 @@
+//! The report as a reader sees it, on a phone and on a desk: opened in headless Chromium, every figure is
+//! there and nothing overflows. Skipped with a message where there is no Chromium.
+
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+use serde::Deserialize;
+
+/// A body of 5 parts of 24 sensors that moves for 1500 s, at the dimensions whose maps are drawn.
+const SMALL: &str = "
+[skin]
+around = 8
+along = 3
+[physics]
+duration = 1500.0
+[schema]
+chains = 6
+sweeps = 60
+[experiment]
+dimensions = [2, 3, 14]
+coordinations = [0.4, 0.9, 1.0]
+simulations = 2
+seed = 11
+";
+
+/// Opens the report in a frame of each width and says what it sees, as JSON in the element `seen`.
+const HARNESS: &str = r#"<!doctype html><meta charset="utf-8"><body><pre id="seen"></pre><script>
+const report = REPORT;
+function look(width) {
+  return new Promise(done => {
+    const frame = document.createElement("iframe");
+    frame.style.cssText = `border:0;width:${width}px;height:900px`;
+    frame.onload = () => {
+      const page = frame.contentDocument, right = element => element.getBoundingClientRect().right;
+      const beyond = [...page.body.querySelectorAll("*")]
+        .filter(element => !element.closest("svg svg, svg *") && right(element) > width + 0.5);
+      const figures = [...page.querySelectorAll("figure")].map(figure => {
+        const box = figure.querySelector("svg")?.getBoundingClientRect();
+        const sizes = [...figure.querySelectorAll("svg text")].map(text => {
+          const matrix = text.getScreenCTM(), scale = Math.hypot(matrix.a, matrix.b); // some are turned
+          return parseFloat(getComputedStyle(text).fontSize) * scale;
+        });
+        const cut = [...figure.querySelectorAll("svg text")].filter(text => {
+          const inner = text.getBoundingClientRect();
+          return inner.left < box.left - 1 || inner.right > box.right + 1 || inner.top < box.top - 1 ||
+            inner.bottom > box.bottom + 1;
+        }).map(text => text.textContent.trim()).filter(words => words);
+        return { name: figure.id, width: box?.width ?? 0, height: box?.height ?? 0,
+          smallest_text: Math.min(...sizes), cut };
+      });
+      done({ width, scroll: page.documentElement.scrollWidth, rows: page.querySelectorAll(".claims tbody tr").length,
+        settings: page.querySelectorAll(".settings tbody tr").length,
+        beyond: beyond.map(element => `${element.tagName} ${element.textContent.slice(0, 40)}`), figures });
+    };
+    frame.srcdoc = report;
+    document.body.append(frame);
+  });
+}
+(async () => {
+  const seen = [await look(375), await look(1280)];
+  document.getElementById("seen").textContent = JSON.stringify(seen);
+})();
+</script></body>"#;
+
+#[derive(Debug, Deserialize)]
+struct Seen {
+    width: f64,
+    scroll: f64,
+    rows: usize,
+    settings: usize,
+    beyond: Vec<String>,
+    figures: Vec<Figure>,
+}
+
+#[derive(Debug, Deserialize)]
+struct Figure {
+    name: String,
+    width: f64,
+    height: f64,
+    smallest_text: f64,
+    cut: Vec<String>,
+}
+
+/// What Chromium shows of a report, at the width of a phone and of a desk; none without Chromium.
+fn look(report: &str, folder: &Path) -> Option<Vec<Seen>> {
+    // Within a script, "</" would end it.
+    let quoted = serde_json::to_string(report).unwrap().replace("</", "<\\/");
+    let page = folder.join("harness.html");
+    fs::write(&page, HARNESS.replace("REPORT", &quoted)).unwrap();
+    let output = Command::new("chromium")
+        .args(["--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--no-first-run"])
+        .args(["--disable-background-networking", "--disable-component-update", "--disable-sync"])
+        .arg(format!("--user-data-dir={}", folder.join("chromium").display()))
+        .args(["--virtual-time-budget=20000", "--dump-dom"])
+        .arg(format!("file://{}", page.display()))
+        .output();
+    let output = match output {
+        Ok(output) => output,
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
+            eprintln!("skipped: there is no Chromium (Debian's package chromium) to open the report in");
+            return None;
+        }
+        Err(error) => panic!("Chromium cannot be started: {error}"),
+    };
+    let page = String::from_utf8_lossy(&output.stdout);
+    let (_, rest) = page.split_once("id=\"seen\">").unwrap_or_else(|| panic!("{output:?}"));
+    let (seen, _) = rest.split_once("</pre>").unwrap();
+    let seen = seen.replace("&amp;", "&").replace("&lt;", "<").replace("&gt;", ">");
+    Some(serde_json::from_str(&seen).unwrap_or_else(|error| panic!("{error}: {seen}")))
+}
+
+#[test]
+fn the_report_shows_every_figure_and_nothing_overflows() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("small.toml"), SMALL).unwrap();
+    for (experiment, figures) in [
+        (
+            "exp1",
+            &[
+                "fig04-agent",
+                "fig05-angles",
+                "fig06a-map-2d",
+                "fig06b-map-3d",
+                "fig06c-clusters-2d",
+                "fig06d-clusters-3d",
+                "fig07-parts",
+                "fig08a-ari-baselines",
+                "fig08b-ari",
+                "fig09-ari-box",
+                "fig10a-tree-baseline",
+                "fig10b-tree",
+            ][..],
+        ),
+        ("exp2", &["fig11a-ari", "fig11b-tree"]),
+    ] {
+        let run = Command::new(env!("CARGO_BIN_EXE_bodyschema"))
+            .current_dir(folder.path())
+            .args(["reproduce", experiment, "--settings", "small.toml", "--out", experiment])
+            .output()
+            .unwrap();
+        assert!(run.status.code().unwrap() <= 1, "{run:?}");
+        let report = fs::read_to_string(folder.path().join(experiment).join("report.html")).unwrap();
+        for forbidden in ["src=\"http", "href=\"http", "@import", "url("] {
+            assert!(!report.contains(forbidden), "the report needs the network: {forbidden}");
+        }
+        let Some(seen) = look(&report, folder.path()) else { return };
+        for Seen { width, scroll, rows, settings, beyond, figures: found } in seen {
+            let context = format!("{experiment} at {width} px");
+            assert!(scroll <= width, "{context}: {scroll} px wide; {beyond:?}");
+            assert!(beyond.is_empty(), "{context}: {beyond:?}");
+            assert!(rows >= 10 && settings >= 30, "{context}: {rows} claims, {settings} settings");
+            let names: Vec<&str> = found.iter().map(|figure| figure.name.as_str()).collect();
+            assert_eq!(names, figures, "{context}");
+            for Figure { name, width, height, smallest_text, cut } in &found {
+                assert!(*width > 300.0 && *height > 100.0, "{context}: {name} is {width} x {height} px");
+                assert!(*smallest_text >= 7.5, "{context}: {name} has text of {smallest_text} px");
+                assert!(cut.is_empty(), "{context}: {name} cuts off {cut:?}");
+            }
+        }
+        // The twin: a report that is too wide is seen.
+        let wide = report.replace("</main>", "<p style=\"width:1400px\">wide</p></main>");
+        let seen = look(&wide, folder.path()).unwrap();
+        assert!(seen.iter().all(|seen| seen.scroll > seen.width && !seen.beyond.is_empty()), "{seen:?}");
+    }
+}
