@@ -4,10 +4,11 @@
 //! An [`agent`] of five cylinders moves at random in Open Dynamics Engine ([`simulate`]). The pressure of
 //! the fluid on its sensors ([`sense`]) is turned into symbols ([`quantise`]); how much the symbols of two
 //! sensors tell of each other is their [`distance`], and the distances place all sensors on a [`body_map`].
-//! A mixture with latent joints finds parts and their tree on it, the body [`schema`], and the truth says
-//! how well ([`evaluate`]). [`pipeline`] composes these stages; [`reproduce`] runs an experiment of them,
-//! from which [`figures`] and [`claims`] are made. All [`settings`] stand in `reproduce/paper.toml`, and
-//! [`record`] reads and writes every file.
+//! A mixture with latent joints finds parts and their tree on it, the body [`schema`]; [`baselines`] cluster it
+//! in other ways, and the truth says how well ([`evaluate`]). [`pipeline`] composes these stages;
+//! [`reproduce`] runs an experiment of them and sums it up for its [`conditions`], from which [`figures`] and
+//! [`claims`] are made. [`plot`] draws the figures and [`report`] shows all of it. All [`settings`] stand in
+//! `reproduce/paper.toml`, and [`record`] reads and writes every file.
 
 pub mod agent;
 pub mod baselines;

@@ -64,7 +64,7 @@ pub fn gmm(map: &BodyMap, clusters: usize, restarts: usize, rng: &mut Stream) ->
     best.expect("there is at least one start")
 }
 
-/// What is added to the diagonal of each covariance: [`RIDGE`] times the mean variance of the coordinates,
+/// What is added to the diagonal of each covariance: a millionth of the mean variance of the coordinates,
 /// with divisor n.
 pub fn ridge(map: &BodyMap) -> f64 {
     let points = Points::new(map);
