@@ -22,6 +22,15 @@ impl BodyMap {
     pub fn points(&self) -> usize {
         self.coordinates.len() / self.dims
     }
+
+    /// The first d of its dimensions.
+    ///
+    /// # Panics
+    /// If it has fewer.
+    pub fn first(&self, dims: usize) -> Self {
+        let rows = self.coordinates.chunks_exact(self.dims);
+        Self { dims, coordinates: rows.flat_map(|row| &row[..dims]).copied().collect() }
+    }
 }
 
 /// The eigen-decomposition of the doubly centred matrix B = −½ J D² J, whose entries are the inner

@@ -12,10 +12,11 @@ use bodyschema::claims::{Verdict, table};
 use bodyschema::distance::information_metric;
 use bodyschema::evaluate::{Score, Truth, parts, score};
 use bodyschema::plot;
+use bodyschema::progress::progress;
 use bodyschema::quantise::quantise;
 use bodyschema::record::{npy, prepare_folder, tables};
 use bodyschema::report;
-use bodyschema::reproduce::{self, Experiment, Run, progress};
+use bodyschema::reproduce::{self, Experiment, Run};
 use bodyschema::schema::{self, Model, Sample, infer};
 use bodyschema::sense::sense;
 use bodyschema::settings::{EdgeWeight, Keep, Scheme, Settings};
@@ -420,8 +421,7 @@ fn run_plot(folder: &Path) -> Result<()> {
 }
 
 fn run_reproduce(run: &Run) -> Result<ExitCode> {
-    let Settings { agent, skin, .. } = run.settings;
-    let (largest, sensors) = (run.largest_dimension(), Agent::new(agent, skin).sites.len());
+    let (largest, sensors) = (run.largest_dimension(), run.sensors());
     let setting = match run.experiment {
         Experiment::Exp1 => "experiment.dimensions",
         Experiment::Exp2 => "experiment.dimension",

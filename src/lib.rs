@@ -20,6 +20,7 @@ pub mod evaluate;
 pub mod figures;
 pub mod pipeline;
 pub mod plot;
+pub mod progress;
 pub mod quantise;
 pub mod record;
 pub mod report;

@@ -2,10 +2,11 @@
 
 use indicatif::ProgressBar;
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 use crate::agent::Agent;
 use crate::baselines::{Clustering, cluster};
-use crate::body_map::{ClassicalScaling, MapError};
+use crate::body_map::{BodyMap, ClassicalScaling, MapError};
 use crate::distance::{Distances, information_metric};
 use crate::evaluate::{Truth, adjusted_rand_index, parts, score};
 use crate::quantise::quantise;
@@ -17,21 +18,40 @@ use crate::simulate::simulate;
 use crate::simulate::world::Unstable;
 use crate::streams::stream;
 
-/// All that one simulation gives to the inference, and the truth that it must not see.
+/// What the inference and its evaluation need of one simulation.
+#[derive(Debug, Clone)]
+pub struct Body {
+    /// The true parts and tree, which the inference must not see.
+    pub truth: Truth,
+    /// The body map of the largest dimension, whose first columns are those of fewer; none where no sensor
+    /// differs from another, as when nothing ever moves (p = 1).
+    pub map: Option<BodyMap>,
+}
+
+/// What stages 1 to 5 make of one simulation.
 #[derive(Debug, Clone)]
 pub struct MappedBody {
-    /// The true parts and tree.
-    pub truth: Truth,
+    /// What the inference needs.
+    pub body: Body,
     /// The information metric between all sensors.
     pub distances: Distances,
-    /// The body maps of all dimensions.
-    pub scaling: ClassicalScaling,
+    /// How well the distances could be mapped.
+    pub facts: Facts,
+}
+
+/// How well the sensors of a body could be mapped.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Facts {
     /// Sensors that showed one symbol throughout.
     pub constant_sensors: usize,
+    /// Dimensions that the distances span.
+    pub positive_eigenvalues: usize,
+    /// Share of negative eigenvalues in the sum of all magnitudes.
+    pub negative_eigenvalue_share: f64,
 }
 
 /// A draw and its evaluation: a row of an experiment's `samples.csv`.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Record {
     /// Simulation, from 1.
     pub simulation: usize,
@@ -58,7 +78,7 @@ pub struct Record {
 }
 
 /// A clustering that was told the number of clusters, and its evaluation: a row of `baselines.csv`.
-#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct BaselineRecord {
     /// Simulation, from 1.
     pub simulation: usize,
@@ -86,13 +106,14 @@ pub enum StageError {
     Infer(#[from] PriorError),
 }
 
-/// Stages 1 to 5. `progress` advances by one for each sample.
+/// Stages 1 to 5, to a map of `dims` dimensions. `progress` advances by one for each sample.
 ///
 /// # Errors
 /// If the simulation is unstable or the distances cannot be scaled.
 pub fn map_body(
     settings: &Settings,
     simulation: usize,
+    dims: usize,
     progress: &ProgressBar,
 ) -> Result<MappedBody, StageError> {
     let agent = Agent::new(&settings.agent, &settings.skin);
@@ -102,16 +123,19 @@ pub fn map_body(
     let symbols = quantise(&tactile, &settings.quantise);
     drop(tactile);
     let distances = information_metric(&symbols);
-    Ok(MappedBody {
-        truth: Truth { labels: agent.labels(), tree: agent.tree() },
-        scaling: ClassicalScaling::new(&distances)?,
-        distances,
+    let scaling = ClassicalScaling::new(&distances)?;
+    let facts = Facts {
         constant_sensors: symbols.constant_sensors().len(),
-    })
+        positive_eigenvalues: scaling.positive(),
+        negative_eigenvalue_share: scaling.negative_share(),
+    };
+    let map = if scaling.positive() == 0 { None } else { Some(scaling.coordinates(dims)?) };
+    let truth = Truth { labels: agent.labels(), tree: agent.tree() };
+    Ok(MappedBody { body: Body { truth, map }, distances, facts })
 }
 
 /// What the inference says of one body map.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Inference {
     /// All draws, evaluated.
     pub records: Vec<Record>,
@@ -121,13 +145,12 @@ pub struct Inference {
 
 /// Stages 6 and 7 for one condition. `progress` advances by one for each chain.
 ///
-/// Where no sensor differs from another, as when nothing ever moves (p = 1), there is no body map to draw
-/// from. The answer of every chain is then one part that has all sensors.
+/// Where there is no body map to draw from, the answer of every chain is one part that has all sensors.
 ///
 /// # Errors
-/// If the distances span fewer than `dimension` dimensions.
+/// If the map spans fewer than `dimension` dimensions.
 pub fn infer_and_score(
-    body: &MappedBody,
+    body: &Body,
     dimension: usize,
     model: Model,
     settings: &Settings,
@@ -135,12 +158,14 @@ pub fn infer_and_score(
     progress: &ProgressBar,
 ) -> Result<Inference, StageError> {
     let schema = &settings.schema;
-    let samples = if body.scaling.positive() == 0 {
-        progress.inc(schema.chains as u64);
-        one_part(body.distances.sensors, schema)
-    } else {
-        let map = body.scaling.coordinates(dimension)?;
-        infer(&map, model, schema, settings.experiment.seed, simulation, progress)?
+    let samples = match &body.map {
+        None => {
+            progress.inc(schema.chains as u64);
+            one_part(body.truth.labels.len(), schema)
+        }
+        Some(map) => {
+            infer(&map.first(dimension), model, schema, settings.experiment.seed, simulation, progress)?
+        }
     };
     let record = |sample: &Sample| {
         let score = score(sample, &body.truth, settings.evaluate.eligible_ari);
@@ -163,21 +188,15 @@ pub fn infer_and_score(
 
 /// Ward's method, k-means and GMM with each number of clusters on one body map (figure 8a).
 ///
-/// Where no sensor differs from another, all of them are in one cluster.
-///
-/// # Errors
-/// If the distances span fewer than `dimension` dimensions.
+/// Where there is no body map, all sensors are in one cluster.
 pub fn cluster_and_score(
-    body: &MappedBody,
+    body: &Body,
     dimension: usize,
     settings: &Settings,
     simulation: usize,
-) -> Result<Vec<BaselineRecord>, StageError> {
+) -> Vec<BaselineRecord> {
     let Settings { baselines, experiment, motion, .. } = settings;
-    let map = match body.scaling.positive() {
-        0 => None,
-        _ => Some(body.scaling.coordinates(dimension)?),
-    };
+    let map = body.map.as_ref().map(|map| map.first(dimension));
     let conditions: Vec<(Clustering, usize)> = Clustering::ALL
         .into_iter()
         .flat_map(|method| baselines.clusters.iter().map(move |&k| (method, k)))
@@ -194,5 +213,5 @@ pub fn cluster_and_score(
         let ari = adjusted_rand_index(&labels, &body.truth.labels);
         BaselineRecord { simulation, coordination: motion.coordination, dimension, method, clusters, ari }
     };
-    Ok(conditions.into_par_iter().map(record).collect())
+    conditions.into_par_iter().map(record).collect()
 }

@@ -201,18 +201,7 @@ fn stated_settings() -> Vec<Setting> {
 }
 
 fn manifest_section(manifest: &Value) -> Markup {
-    let plain = [
-        "program",
-        "revision",
-        "command",
-        "seed",
-        "streams",
-        "rustc",
-        "libc",
-        "cpu",
-        "threads",
-        "peak_memory",
-    ];
+    let plain = ["program", "revision", "seed", "streams", "rustc", "libc", "cpu"];
     html! {
         section id="manifest" {
             h2 { "Manifest" }
@@ -221,10 +210,9 @@ fn manifest_section(manifest: &Value) -> Markup {
                     dt { (name.replace('_', " ")) } dd { (text(&manifest[name])) }
                 }
                 dt { "ODE" } dd { (text(&manifest["ode"]["version"])) " (" (text(&manifest["ode"]["configuration"])) ")" }
-                @for (name, value) in manifest["times"].as_object().into_iter().flatten() {
-                    dt { (name.replace('_', " ")) } dd { (text(value)) }
-                }
             }
+            p { "When and how the run was made, on how many threads and with how much memory, is in run.json beside \
+                 this report." }
             h3 { "Files" }
             table.files {
                 thead { tr { th scope="col" { "file" } th scope="col" { "SHA-256" } } }

@@ -116,7 +116,9 @@ impl Resamples {
         let values: Vec<f64> =
             groups.iter().filter(|group| group.1 > 0).map(|group| group.0 / group.1 as f64).collect();
         let simulations = values.len();
-        let Some((low, high)) = pooled.interval.filter(|_| simulations > 1) else {
+        // Samples of simulations of their own are independent: their interval stands.
+        let alone = simulations < 2 || groups.iter().all(|group| group.1 < 2);
+        let Some((low, high)) = pooled.interval.filter(|_| !alone) else {
             return Estimate { simulations, ..pooled };
         };
         let resampled = |row: &Vec<f64>| {
@@ -253,6 +255,8 @@ mod tests {
         // Four simulations without an eligible sample leave one, whose samples are all there is.
         let alone = resamples.clustered(rate(9, 10), &[(9.0, 10), (0.0, 0), (0.0, 0), (0.0, 0), (0.0, 0)]);
         assert_eq!((alone.interval, alone.spread, alone.simulations), (rate(9, 10).interval, None, 1));
+        let single = resamples.clustered(rate(3, 5), &[(1.0, 1), (0.0, 1), (1.0, 1), (1.0, 1), (0.0, 1)]);
+        assert_eq!((single.interval, single.spread, single.simulations), (rate(3, 5).interval, None, 5));
     }
 
     #[test]

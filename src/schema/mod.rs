@@ -46,7 +46,7 @@ impl Model {
 }
 
 /// One draw of a body schema.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Sample {
     /// The chain it is from, from 0.
     pub chain: usize,

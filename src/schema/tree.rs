@@ -1,7 +1,9 @@
 //! Edge weights → minimum spanning tree by Prim's algorithm (equation 21; Cormen et al.).
 
+use serde::{Deserialize, Serialize};
+
 /// An edge of a tree.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Edge {
     /// The node that was added later.
     pub child: usize,

@@ -1,0 +1,190 @@
+//! Runs that are killed, interrupted or damaged end with the same files as one that is left alone.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, ExitStatus, Stdio};
+use std::time::Duration;
+
+use bodyschema::streams::stream;
+use rand::RngExt;
+
+/// Both experiments in a second or two.
+const SMALL: &str = "
+[skin]
+around = 8
+along = 3
+[physics]
+duration = 1000.0
+[schema]
+chains = 6
+sweeps = 100
+[experiment]
+dimensions = [2, 4]
+coordinations = [0.5, 0.9]
+dimension = 4
+simulations = 2
+seed = 5
+";
+
+struct Place {
+    folder: tempfile::TempDir,
+}
+
+impl Place {
+    fn new() -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        fs::write(folder.path().join("small.toml"), SMALL).unwrap();
+        Self { folder }
+    }
+
+    fn out(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    fn start(&self, experiment: &str, out: &str, settings: &str) -> Child {
+        Command::new(env!("CARGO_BIN_EXE_bodyschema"))
+            .current_dir(self.folder.path())
+            .args(["reproduce", experiment, "--settings", settings, "--out", out])
+            .stdout(Stdio::null())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap()
+    }
+
+    /// Runs to the end, and returns what it said of trouble.
+    fn finish(&self, experiment: &str, out: &str) -> String {
+        let output = self.start(experiment, out, "small.toml").wait_with_output().unwrap();
+        assert!(output.status.code().unwrap() <= 1, "{output:?}");
+        String::from_utf8(output.stderr).unwrap()
+    }
+}
+
+/// All files of a run but run.json, which tells runs apart.
+fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
+    let mut files = BTreeMap::new();
+    let mut folders = vec![folder.to_owned()];
+    while let Some(next) = folders.pop() {
+        for entry in fs::read_dir(next).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.file_name().unwrap() != "run.json" {
+                files.insert(path.strip_prefix(folder).unwrap().to_owned(), fs::read(&path).unwrap());
+            }
+        }
+    }
+    files
+}
+
+fn same(found: &Path, expected: &BTreeMap<PathBuf, Vec<u8>>, what: &str) {
+    let found = files(found);
+    let names = |files: &BTreeMap<PathBuf, Vec<u8>>| files.keys().cloned().collect::<Vec<_>>();
+    assert_eq!(names(&found), names(expected), "{what}");
+    for (name, bytes) in expected {
+        assert!(found[name] == *bytes, "{what}: {} differs", name.display());
+    }
+}
+
+fn ended(child: &mut Child, within: Duration) -> Option<ExitStatus> {
+    const STEP: Duration = Duration::from_millis(2);
+    for _ in 0..=within.as_millis() / STEP.as_millis() {
+        if let Some(status) = child.try_wait().unwrap() {
+            return Some(status);
+        }
+        std::thread::sleep(STEP);
+    }
+    None
+}
+
+#[test]
+fn a_run_killed_at_any_moment_ends_with_the_same_files() {
+    let place = Place::new();
+    let mut rng = stream(1, 1, "kills", 0);
+    for experiment in ["exp1", "exp2"] {
+        assert_eq!(place.finish(experiment, experiment), "");
+        let expected = files(&place.out(experiment));
+        assert!(
+            expected.keys().all(|name| !name.starts_with("checkpoints")),
+            "they go when a run is finished"
+        );
+        for round in 0..2 {
+            let out = format!("{experiment}-{round}");
+            let mut kills = 0;
+            loop {
+                let mut child = place.start(experiment, &out, "small.toml");
+                // Ever longer, so that even a slow machine finishes at last.
+                let longest = 400 << (kills / 3);
+                let moment = Duration::from_millis(rng.random_range(1..longest));
+                if let Some(status) = ended(&mut child, moment) {
+                    assert!(status.code().unwrap() <= 1, "{status:?}");
+                    break;
+                }
+                child.kill().unwrap();
+                child.wait().unwrap();
+                kills += 1;
+            }
+            assert!(kills > 0, "at least one kill is well before the end");
+            same(&place.out(&out), &expected, &format!("{experiment} after {kills} kills"));
+        }
+    }
+}
+
+/// Starts experiment 1 and leaves it once it has this part.
+fn leave_after(place: &Place, out: &str, part: &str, signal: &str) -> ExitStatus {
+    let mut child = place.start("exp1", out, "small.toml");
+    let part = place.out(out).join("checkpoints").join(part);
+    while !part.exists() {
+        assert!(child.try_wait().unwrap().is_none(), "{} was there before the end", part.display());
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    let pid = child.id().to_string();
+    assert!(Command::new("kill").args([signal, &pid]).status().unwrap().success());
+    child.wait().unwrap()
+}
+
+#[test]
+fn damaged_and_foreign_parts_are_done_again_with_a_line_that_says_so() {
+    let place = Place::new();
+    place.finish("exp1", "whole");
+    let expected = files(&place.out("whole"));
+    let parts = |out: &str| place.out(out).join("checkpoints/simulation-1");
+
+    leave_after(&place, "cut", "simulation-1/dpgmm-lj-2.json", "-KILL");
+    let path = parts("cut").join("dpgmm-2.json");
+    let bytes = fs::read(&path).unwrap();
+    fs::write(&path, &bytes[..bytes.len() / 2]).unwrap();
+    let said = place.finish("exp1", "cut");
+    assert!(said.contains("dpgmm-2.json: is no checkpoint; this part is done again"), "{said}");
+    assert!(said.contains("going on from what an earlier run finished"), "{said}");
+    same(&place.out("cut"), &expected, "a part cut short");
+
+    leave_after(&place, "swapped", "simulation-1/dpgmm-lj-2.json", "-KILL");
+    let map = place.out("swapped").join("simulation-1/body-map.npy");
+    fs::write(&map, fs::read(place.out("whole").join("simulation-2/body-map.npy")).unwrap()).unwrap();
+    let said = place.finish("exp1", "swapped");
+    assert!(said.contains("body-map.npy: has changed or is missing; this part is done again"), "{said}");
+    same(&place.out("swapped"), &expected, "a body map of another simulation");
+
+    leave_after(&place, "other", "simulation-1/dpgmm-lj-2.json", "-KILL");
+    fs::write(place.out("other.toml"), SMALL.replace("seed = 5", "seed = 6")).unwrap();
+    let output = place.start("exp1", "other", "other.toml").wait_with_output().unwrap();
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(said.contains("other settings or of another program are not used"), "{said}");
+    let whole = place.start("exp1", "whole-other", "other.toml").wait_with_output().unwrap();
+    assert!(whole.status.code().unwrap() <= 1);
+    same(&place.out("other"), &files(&place.out("whole-other")), "another seed");
+    // A run that is finished is made anew.
+    assert_eq!(place.finish("exp1", "whole"), "");
+    same(&place.out("whole"), &expected, "twice");
+}
+
+#[test]
+fn ctrl_c_leaves_with_130_and_the_run_goes_on() {
+    let place = Place::new();
+    place.finish("exp1", "whole");
+    let status = leave_after(&place, "left", "simulation-1/dpgmm-2.json", "-INT");
+    assert_eq!(status.code(), Some(130));
+    place.finish("exp1", "left");
+    same(&place.out("left"), &files(&place.out("whole")), "after Ctrl-C");
+}
