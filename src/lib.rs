@@ -31,6 +31,7 @@ pub mod settings;
 pub mod simulate;
 pub mod statistics;
 pub mod streams;
+mod vectorised;
 
 #[cfg(test)]
 mod testing;

@@ -9,7 +9,7 @@
 #[cfg(test)]
 use nalgebra::{DMatrix, DVector};
 
-use super::vectorised::vectorised;
+use crate::vectorised::vectorised;
 
 /// Numbers that are computed side by side.
 pub const LANES: usize = 8;

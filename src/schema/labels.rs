@@ -8,7 +8,7 @@ use rand::{Rng, RngExt};
 
 use super::gaussian::Gaussian;
 use super::points::{BLOCK, Points};
-use super::vectorised::vectorised;
+use crate::vectorised::vectorised;
 
 /// A number for each point of a block.
 type Block = [f64; BLOCK];

@@ -7,7 +7,6 @@ pub mod labels;
 pub mod points;
 pub mod sweep;
 pub mod tree;
-mod vectorised;
 
 use clap::ValueEnum;
 use indicatif::ProgressBar;
