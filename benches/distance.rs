@@ -1,0 +1,62 @@
+//! A synthetic trajectory of full size → the time of the stages from it to the distances, in seconds on all
+//! cores: `cargo bench --bench distance`. `benches/peers/distance.py` says what others take.
+
+use std::hint::black_box;
+use std::time::Instant;
+
+use bodyschema::agent::Agent;
+use bodyschema::distance::information_metric;
+use bodyschema::quantise::quantise;
+use bodyschema::sense::sense;
+use bodyschema::settings::Settings;
+use bodyschema::simulate::Trajectory;
+use bodyschema::simulate::world::Pose;
+use bodyschema::streams::stream;
+use rand::RngExt;
+
+/// T.
+const SAMPLES: usize = 100_000;
+/// Measurements, of which the least is printed: others may use the cores.
+const MEASUREMENTS: usize = 5;
+
+fn main() {
+    let mut settings = Settings::paper();
+    let agent = Agent::new(&settings.agent, &settings.skin);
+    let trajectory = wandering(agent.parts.len());
+    let tactile = timed("sense", || sense(&agent, &trajectory, &settings.sense));
+    for levels in [4, 8] {
+        settings.quantise.levels = levels;
+        let symbols = timed(&format!("quantise, N = {levels}"), || quantise(&tactile, &settings.quantise));
+        timed(&format!("distance, N = {levels}"), || information_metric(&symbols));
+    }
+}
+
+/// Parts that wander at random, each on its own.
+fn wandering(parts: usize) -> Trajectory {
+    let mut rng = stream(1, 1, "bench", 0);
+    let mut step = || rng.random_range(-0.05..0.05);
+    let mut states = vec![([0.0; 3], 0.0_f64); parts];
+    let mut poses = Vec::with_capacity((SAMPLES + 1) * parts);
+    for _ in 0..=SAMPLES {
+        for (position, angle) in &mut states {
+            position.iter_mut().for_each(|coordinate| *coordinate += step());
+            *angle += step();
+            let (sine, cosine) = angle.sin_cos();
+            let rotation = [[1.0, 0.0, 0.0], [0.0, cosine, -sine], [0.0, sine, cosine]];
+            poses.push(Pose { position: *position, rotation });
+        }
+    }
+    Trajectory { parts, joints: parts - 1, poses, angles: vec![] }
+}
+
+/// What `work` makes, and a line with its least time.
+fn timed<R>(name: &str, work: impl Fn() -> R) -> R {
+    let measure = |_| {
+        let start = Instant::now();
+        black_box(work());
+        start.elapsed().as_secs_f64()
+    };
+    let least = (0..MEASUREMENTS).map(measure).fold(f64::INFINITY, f64::min);
+    println!("{name}: {least:.3} s");
+    work()
+}

@@ -1,0 +1,65 @@
+"""Symbols of full size -> the time that NumPy and scikit-learn take for what src/distance.rs does, in seconds.
+
+Run: pip install -r benches/peers/requirements.txt
+     python benches/peers/distance.py
+"""
+
+import time
+
+import numpy as np
+import sklearn.metrics
+
+SENSORS, SAMPLES = 840, 100_000
+CHUNK = 20_000  # samples whose one-hot code is in memory at a time: 0.5 GB at N = 8
+PAIRS = 50  # of which scikit-learn's time is extrapolated
+
+
+def symbols(levels, seed=1):
+    """T x M: half of the samples are 0, the others equally often any other, like symbols of pressures."""
+    rng = np.random.default_rng(seed)
+    felt = rng.random((SAMPLES, SENSORS), dtype=np.float32) < 0.5
+    return felt * rng.integers(1, levels, (SAMPLES, SENSORS), dtype=np.uint8)
+
+
+def one_hot_metric(series, levels):
+    """H(X|Y) + H(Y|X) = 2 H(X, Y) - H(X) - H(Y) of all pairs, in bits, from one matrix product."""
+    joint = np.zeros((SENSORS * levels, SENSORS * levels), dtype=np.float32)  # exact below 2^24
+    for start in range(0, SAMPLES, CHUNK):
+        chunk = series[start : start + CHUNK, :, None]
+        code = (chunk == np.arange(levels, dtype=np.uint8)).astype(np.float32).reshape(len(chunk), -1)
+        joint += code.T @ code
+    p = joint.reshape(SENSORS, levels, SENSORS, levels) / np.float32(SAMPLES)
+    both = -(p * np.log2(p, out=np.zeros_like(p), where=p > 0)).sum(axis=(1, 3), dtype=np.float64)
+    one = np.diag(both)  # H(X, X) = H(X)
+    return 2 * both - one[:, None] - one
+
+
+def numpy_seconds(levels, measurements=2):
+    """Least time of the metric by a one-hot matrix product."""
+    series = symbols(levels)
+
+    def measure():
+        start = time.perf_counter()
+        one_hot_metric(series, levels)
+        return time.perf_counter() - start
+
+    return min(measure() for _ in range(measurements))
+
+
+def sklearn_seconds(levels):
+    """Time of mutual_info_score on PAIRS pairs of sensors, extrapolated to all pairs, on one core."""
+    series = np.ascontiguousarray(symbols(levels).T)
+    start = time.perf_counter()
+    for pair in range(PAIRS):
+        sklearn.metrics.mutual_info_score(series[pair], series[pair + 1])
+    return (time.perf_counter() - start) / PAIRS * (SENSORS * (SENSORS - 1) / 2)
+
+
+if __name__ == "__main__":
+    for levels in (4, 8):
+        print(f"NumPy one-hot product, N = {levels}: {numpy_seconds(levels):.2f} s", flush=True)
+        print(
+            f"scikit-learn mutual_info_score, N = {levels}: {sklearn_seconds(levels):.0f} s "
+            f"(extrapolated from {PAIRS} pairs)",
+            flush=True,
+        )
