@@ -3,6 +3,7 @@
 //! D(X, Y) = H(X|Y) + H(Y|X) in bits. It is 0 where each sensor's symbol tells the other's, so that two
 //! sensors that differ by names of symbols only are at distance 0: a metric up to relabelling.
 
+use pulp::{Arch, NullaryFnOnce};
 use rayon::prelude::*;
 
 use crate::quantise::Symbols;
@@ -27,23 +28,19 @@ impl Distances {
 /// symbols.
 const MOST_PLANES: usize = 10;
 
-/// Sensors whose planes are visited together, so that they stay in the cache: a tile has 8 × 3 × T / 8
-/// bytes at N = 4.
+/// Sensors whose pairs with as many others are counted together, so that their planes stay in the cache:
+/// a tile has 2 × 8 × 3 × T / 8 bytes at N = 4.
 const TILE: usize = 8;
 
 /// The information metric between all pairs of sensors, in bits.
 pub fn information_metric(symbols: &Symbols) -> Distances {
-    let sensors = symbols.sensors();
-    let levels = symbols.levels;
-    let marginals: Vec<Vec<u32>> = symbols
-        .series()
-        .map(|series| {
-            let mut counts = vec![0; levels];
-            series.iter().for_each(|&symbol| counts[usize::from(symbol)] += 1);
-            counts
-        })
-        .collect();
+    let (sensors, levels) = (symbols.sensors(), symbols.levels);
     let planes = (levels <= MOST_PLANES).then(|| BitPlanes::new(symbols));
+    let marginals = match &planes {
+        Some(planes) => planes.marginals(symbols),
+        None => symbols.series().map(|series| histogram(series, levels)).collect(),
+    };
+    let logarithms: Vec<f64> = (0..=symbols.samples).map(|count| libm::log2(count.max(1) as f64)).collect();
 
     let tiles: Vec<(usize, usize)> = (0..sensors)
         .step_by(TILE)
@@ -56,13 +53,14 @@ pub fn information_metric(symbols: &Symbols) -> Distances {
     let tiled: Vec<Vec<f64>> = tiles
         .par_iter()
         .map(|tile| {
+            let counted = planes.as_ref().map(|planes| planes.count(tile.0, tile.1));
             let mut joint = vec![0; levels * levels];
             let metric = |(i, j)| {
-                match &planes {
-                    Some(planes) => planes.count(i, j, &marginals, &mut joint),
+                match &counted {
+                    Some(counted) => counted.joint(i, j, &marginals, &mut joint),
                     None => count(symbols, i, j, &mut joint),
                 }
-                metric_of_counts(&joint, &marginals[i], &marginals[j], symbols.samples)
+                metric_of_counts(&joint, &marginals[i], &marginals[j], &logarithms)
             };
             pairs(tile).map(metric).collect()
         })
@@ -76,21 +74,27 @@ pub fn information_metric(symbols: &Symbols) -> Distances {
     Distances { sensors, values }
 }
 
-/// H(X|Y) + H(Y|X) from joint counts: Σ c_xy [log₂ (c_x / c_xy) + log₂ (c_y / c_xy)] / T.
+/// H(X|Y) + H(Y|X) from joint counts: Σ c_xy [(log₂ c_x − log₂ c_xy) + (log₂ c_y − log₂ c_xy)] / T.
 ///
 /// Every term is at least 0 and exactly 0 where a symbol tells the other, so that neither rounding nor
-/// cancellation can make a distance negative.
-fn metric_of_counts(joint: &[u32], first: &[u32], second: &[u32], samples: usize) -> f64 {
+/// cancellation can make a distance negative. `logarithms` has log₂ c for all c from 1 to T: to look them
+/// up is TODO times as fast as to find them.
+fn metric_of_counts(joint: &[u32], first: &[u32], second: &[u32], logarithms: &[f64]) -> f64 {
+    let log = |count: u32| logarithms[count as usize];
     let mut sum = 0.0;
     for (row, &x) in joint.chunks_exact(second.len()).zip(first) {
         for (&both, &y) in row.iter().zip(second) {
-            if both > 0 {
-                let both = f64::from(both);
-                sum += both * ((f64::from(x) / both).log2() + (f64::from(y) / both).log2());
-            }
+            sum += f64::from(both) * ((log(x) - log(both)) + (log(y) - log(both)));
         }
     }
-    sum / samples as f64
+    sum / (logarithms.len() - 1) as f64
+}
+
+/// How often each symbol occurs.
+fn histogram(series: &[u8], levels: usize) -> Vec<u32> {
+    let mut counts = vec![0; levels];
+    series.iter().for_each(|&symbol| counts[usize::from(symbol)] += 1);
+    counts
 }
 
 /// Joint counts of two sensors, one pass over their symbols: the plain definition (equation 24).
@@ -102,44 +106,95 @@ fn count(symbols: &Symbols, i: usize, j: usize, joint: &mut [u32]) {
     }
 }
 
-/// For each sensor and each level but 0, one bit for each sample: 64 samples are counted at a time.
+/// 512 samples.
+type Lanes = [u64; 8];
+
+/// For each sensor and each level but 0, one bit for each sample.
 struct BitPlanes {
-    levels: usize,
-    words: usize,
-    bits: Vec<u64>,
+    /// Planes of one sensor, N − 1.
+    each: usize,
+    /// Length of one plane.
+    length: usize,
+    /// Plane after plane; empty ones fill the last tile.
+    bits: Vec<Lanes>,
 }
+
+/// Planes of a sensor's tile that are counted together with as many others, each loaded word 4 times.
+const BLOCK: usize = 4;
 
 impl BitPlanes {
     fn new(symbols: &Symbols) -> Self {
-        let (levels, words) = (symbols.levels, symbols.samples.div_ceil(64));
-        let mut bits = vec![0; symbols.sensors() * (levels - 1) * words];
-        bits.par_chunks_exact_mut((levels - 1) * words)
+        let (each, length) = (symbols.levels - 1, symbols.samples.div_ceil(512));
+        let mut bits = vec![[0; 8]; symbols.sensors().next_multiple_of(TILE) * each * length];
+        bits.par_chunks_exact_mut(each * length)
             .zip(symbols.values.par_chunks_exact(symbols.samples))
             .for_each(|(planes, series)| {
                 for (word, chunk) in series.chunks(64).enumerate() {
-                    for (bit, &symbol) in chunk.iter().enumerate() {
-                        if symbol > 0 {
-                            planes[(usize::from(symbol) - 1) * words + word] |= 1 << bit;
-                        }
+                    let mut padded = [0; 64];
+                    padded[..chunk.len()].copy_from_slice(chunk);
+                    let digits = binary_digits(&padded, each);
+                    for (level, plane) in (1..).zip(planes.chunks_exact_mut(length)) {
+                        let digit =
+                            |(k, ones): (usize, &u64)| if level >> k & 1 == 1 { *ones } else { !ones };
+                        plane.as_flattened_mut()[word] =
+                            digits.iter().enumerate().map(digit).fold(u64::MAX, |all, one| all & one);
                     }
                 }
             });
-        Self { levels, words, bits }
+        Self { each, length, bits }
     }
 
-    fn planes(&self, sensor: usize) -> std::slice::ChunksExact<'_, u64> {
-        let size = (self.levels - 1) * self.words;
-        self.bits[sensor * size..][..size].chunks_exact(self.words)
+    /// How often each symbol of each sensor occurs.
+    fn marginals(&self, symbols: &Symbols) -> Vec<Vec<u32>> {
+        let planes = self.bits.par_chunks_exact(self.each * self.length).take(symbols.sensors());
+        let marginal = |planes: &[Lanes]| {
+            let ones =
+                |plane: &[Lanes]| plane.as_flattened().iter().map(|word| word.count_ones()).sum::<u32>();
+            let mut counts = vec![symbols.samples as u32];
+            counts.extend(planes.chunks_exact(self.length).map(ones));
+            counts[0] -= counts[1..].iter().sum::<u32>();
+            counts
+        };
+        planes.map(marginal).collect()
     }
 
+    /// Counts together all planes of the tiles of sensors that start at `row` and `column`.
+    fn count(&self, row: usize, column: usize) -> Counted {
+        let size = TILE * self.each;
+        let block = |tile: usize, start: usize| {
+            std::array::from_fn(|k| &self.bits[(tile * self.each + start + k) * self.length..][..self.length])
+        };
+        let mut ones = vec![0; size * size];
+        for x in (0..size).step_by(BLOCK) {
+            for y in (0..size).step_by(BLOCK) {
+                let counts = Block { first: block(row, x), second: block(column, y) }.count();
+                for (k, counts) in counts.iter().enumerate() {
+                    ones[(x + k) * size + y..][..BLOCK].copy_from_slice(counts);
+                }
+            }
+        }
+        Counted { row, column, each: self.each, ones }
+    }
+}
+
+/// Numbers of bits set in both planes of every pair from two tiles.
+struct Counted {
+    row: usize,
+    column: usize,
+    each: usize,
+    /// By rows: the planes of the second tile for each of the first.
+    ones: Vec<u32>,
+}
+
+impl Counted {
     /// Joint counts of two sensors; those with level 0 follow from the marginal counts.
-    fn count(&self, i: usize, j: usize, marginals: &[Vec<u32>], joint: &mut [u32]) {
-        let levels = self.levels;
+    fn joint(&self, i: usize, j: usize, marginals: &[Vec<u32>], joint: &mut [u32]) {
+        let (levels, size) = (self.each + 1, TILE * self.each);
         joint[..levels].copy_from_slice(&marginals[j]);
-        for (x, first) in (1..).zip(self.planes(i)) {
+        for x in 1..levels {
+            let at = ((i - self.row) * self.each + x - 1) * size + (j - self.column) * self.each;
             joint[x * levels] = marginals[i][x];
-            for (y, second) in (1..).zip(self.planes(j)) {
-                let both = common_bits(first, second);
+            for (y, &both) in (1..).zip(&self.ones[at..][..self.each]) {
                 joint[x * levels + y] = both;
                 joint[x * levels] -= both;
                 joint[y] -= both;
@@ -149,9 +204,69 @@ impl BitPlanes {
     }
 }
 
-/// Number of bits set in both.
-fn common_bits(first: &[u64], second: &[u64]) -> u32 {
-    first.iter().zip(second).map(|(a, b)| (a & b).count_ones()).sum()
+/// Planes of two tiles whose words are each loaded once to be counted with [`BLOCK`] others.
+#[derive(Clone, Copy)]
+struct Block<'a> {
+    first: [&'a [Lanes]; BLOCK],
+    second: [&'a [Lanes]; BLOCK],
+}
+
+#[cfg(target_arch = "x86_64")]
+pulp::simd_type! {
+    /// Processors that count the bits of eight words at once.
+    struct CountsBits {
+        avx512f: "avx512f",
+        avx512vpopcntdq: "avx512vpopcntdq",
+    }
+}
+
+impl Block<'_> {
+    /// Numbers of bits set in both planes, by the widest instructions of this processor.
+    fn count(self) -> [[u32; BLOCK]; BLOCK] {
+        #[cfg(target_arch = "x86_64")]
+        if let Some(processor) = CountsBits::try_new() {
+            return processor.vectorize(self);
+        }
+        Arch::new().dispatch(self)
+    }
+}
+
+impl NullaryFnOnce for Block<'_> {
+    type Output = [[u32; BLOCK]; BLOCK];
+
+    #[inline(always)]
+    fn call(self) -> Self::Output {
+        let length = self.first[0].len();
+        let first = self.first.map(|plane| &plane[..length]);
+        let second = self.second.map(|plane| &plane[..length]);
+        let mut sums = [[[0_u64; 8]; BLOCK]; BLOCK];
+        for at in 0..length {
+            for x in 0..BLOCK {
+                for y in 0..BLOCK {
+                    for lane in 0..8 {
+                        let both = first[x][at][lane] & second[y][at][lane];
+                        sums[x][y][lane] += u64::from(both.count_ones());
+                    }
+                }
+            }
+        }
+        sums.map(|row| row.map(|lanes| lanes.iter().sum::<u64>() as u32))
+    }
+}
+
+/// Binary digits of 64 symbols up to `largest`, the lowest first: bit t of each is that of symbol t.
+fn binary_digits(symbols: &[u8; 64], largest: usize) -> Vec<u64> {
+    let digits = (largest + 1).next_power_of_two().ilog2();
+    let mut ones = vec![0; digits as usize];
+    for (at, eight) in symbols.as_chunks::<8>().0.iter().enumerate() {
+        let eight = u64::from_le_bytes(*eight);
+        for (k, ones) in ones.iter_mut().enumerate() {
+            // The product moves the lowest bits of all bytes into the highest byte.
+            let bits = (eight >> k & 0x0101_0101_0101_0101).wrapping_mul(0x0102_0408_1020_4080) >> 56;
+            *ones |= bits << (8 * at);
+        }
+    }
+    ones
 }
 
 #[cfg(test)]
