@@ -4,9 +4,11 @@
 //! default. All dimensions come from one eigen-decomposition: a map of d dimensions is the first d columns
 //! of any larger one.
 
-use faer::{Mat, Side};
+use faer::MatRef;
+use rayon::prelude::*;
 
 use crate::distance::Distances;
+use crate::eigen::{Eigen, NoConvergence, largest};
 
 /// Coordinates of n points (sensors) in d dimensions.
 #[derive(Debug, Clone, PartialEq)]
@@ -33,14 +35,18 @@ impl BodyMap {
     }
 }
 
-/// The eigen-decomposition of the doubly centred matrix B = −½ J D² J, whose entries are the inner
-/// products of the points if the distances are Euclidean.
+/// The largest eigenvalues of the doubly centred matrix B = −½ J D² J, whose entries are the inner products of
+/// the points if the distances are Euclidean.
 #[derive(Debug, Clone)]
 pub struct ClassicalScaling {
-    /// Eigenvalues, descending; negative ones measure how far the distances are from Euclidean.
+    /// The largest eigenvalues, descending; all of them if there are no more than were asked for.
     pub eigenvalues: Vec<f64>,
     /// Their unit eigenvectors, one after the other; the entry of largest magnitude is positive.
     vectors: Vec<f64>,
+    /// n.
+    sensors: usize,
+    /// Sum of the squares of all eigenvalues: of all entries of B.
+    squares: f64,
 }
 
 /// A body map that cannot be made.
@@ -68,58 +74,56 @@ pub enum MapError {
 }
 
 impl ClassicalScaling {
-    /// Decomposes a matrix of distances, which must be finite and symmetric.
+    /// Decomposes a matrix of distances, which must be finite and symmetric, for maps of up to `dims`
+    /// dimensions.
     ///
     /// # Errors
     /// If the eigen-decomposition does not converge.
-    pub fn new(distances: &Distances) -> Result<Self, MapError> {
+    pub fn new(distances: &Distances, dims: usize) -> Result<Self, MapError> {
         let n = distances.sensors;
-        let squared = |i: usize, j: usize| distances.get(i, j).powi(2);
-        let means: Vec<f64> = (0..n).map(|i| (0..n).map(|j| squared(i, j)).sum::<f64>() / n as f64).collect();
-        let mean = means.iter().sum::<f64>() / n as f64;
-        let centred = Mat::from_fn(n, n, |i, j| -0.5 * (squared(i, j) - means[i] - means[j] + mean));
-        // faer's results depend on its number of threads; one is as fast at this size.
-        faer::set_global_parallelism(faer::Par::Seq);
-        let decomposition =
-            centred.self_adjoint_eigen(Side::Lower).map_err(|_| MapError::NoConvergence(n))?;
-
-        let ascending = decomposition.S().column_vector();
-        let mut vectors = Vec::with_capacity(n * n);
-        for column in (0..n).rev() {
-            let vector = decomposition.U().col(column);
+        let centred = inner_products(distances);
+        let squared = |row: &[f64]| row.iter().map(|product| product.powi(2)).sum::<f64>();
+        let squares = centred.chunks_exact(n).map(squared).sum();
+        let Eigen { values, vectors } = largest(MatRef::from_row_major_slice(&centred, n, n), dims)
+            .map_err(|NoConvergence| MapError::NoConvergence(n))?;
+        let vectors = vectors.col_iter().flat_map(|vector| {
             let largest =
-                (0..n).fold(0.0, |kept: f64, i| if vector[i].abs() > kept.abs() { vector[i] } else { kept });
-            vectors.extend((0..n).map(|i| vector[i] * largest.signum()));
-        }
-        Ok(Self { eigenvalues: (0..n).rev().map(|i| ascending[i]).collect(), vectors })
+                vector.iter().fold(0.0, |kept: f64, x| if x.abs() > kept.abs() { *x } else { kept });
+            vector.iter().map(move |x| x * largest.signum())
+        });
+        Ok(Self { vectors: vectors.collect(), eigenvalues: values, sensors: n, squares })
     }
 
-    /// Number of eigenvalues above the rounding of the largest.
+    /// Number of the largest eigenvalues that are above rounding: of all positive ones, if it is less than the
+    /// dimensions that the decomposition was made for. 0 if no sensor differs from another.
     pub fn positive(&self) -> usize {
-        let magnitude = self.eigenvalues.iter().fold(0.0, |kept: f64, value| kept.max(value.abs()));
-        let rounding = magnitude * f64::EPSILON * self.eigenvalues.len() as f64;
+        let rounding = self.squares.sqrt() * f64::EPSILON * self.sensors as f64;
         self.eigenvalues.iter().filter(|value| **value > rounding).count()
     }
 
-    /// Share of the negative eigenvalues in the sum of all magnitudes, 0 for Euclidean distances.
-    pub fn negative_share(&self) -> f64 {
-        let total: f64 = self.eigenvalues.iter().map(|value| value.abs()).sum();
-        // A fold from 0, since the sum of nothing is −0.
-        let negative = self.eigenvalues.iter().fold(0.0, |sum, value| sum - value.min(0.0));
-        if total > 0.0 { negative / total } else { 0.0 }
+    /// How well a map of d dimensions agrees with the distances: share of its eigenvalues in the sum of the
+    /// squares of all, negative ones too (α₂ of Mardia, Kent & Bibby, Multivariate Analysis, 1979, section 14.4).
+    /// 1 if the points of the map have these distances, 0 if all distances are 0.
+    pub fn agreement(&self, dims: usize) -> f64 {
+        let kept: f64 = self.eigenvalues.iter().take(dims).map(|value| value.powi(2)).sum();
+        if self.squares > 0.0 { kept / self.squares } else { 0.0 }
     }
 
     /// The body map in d dimensions, columns by descending eigenvalue; its mean is the origin.
     ///
     /// # Errors
     /// [`MapError::TooManyDimensions`] if fewer than `dims` eigenvalues are positive.
+    ///
+    /// # Panics
+    /// If `dims` is more than the decomposition was made for.
     pub fn coordinates(&self, dims: usize) -> Result<BodyMap, MapError> {
-        let n = self.eigenvalues.len();
+        let n = self.sensors;
         let positive = self.positive();
         if positive == 0 {
             return Err(MapError::NoDifference(n));
         }
         if dims > positive {
+            assert!(positive < self.eigenvalues.len(), "decomposed for {positive} dimensions only");
             return Err(MapError::TooManyDimensions { dims, sensors: n, positive });
         }
         let coordinates = (0..n)
@@ -127,6 +131,21 @@ impl ClassicalScaling {
             .collect();
         Ok(BodyMap { dims, coordinates })
     }
+}
+
+/// B = −½ J D² J, n × n, exactly symmetric.
+fn inner_products(distances: &Distances) -> Vec<f64> {
+    let n = distances.sensors;
+    let squares = |i: usize| distances.values[i * n..][..n].iter().map(|distance| distance.powi(2));
+    let means: Vec<f64> = (0..n).into_par_iter().map(|i| squares(i).sum::<f64>() / n as f64).collect();
+    let mean = means.iter().sum::<f64>() / n as f64;
+    let mut centred = vec![0.0; n * n];
+    centred.par_chunks_exact_mut(n).enumerate().for_each(|(i, row)| {
+        for ((entry, square), other) in row.iter_mut().zip(squares(i)).zip(&means) {
+            *entry = -0.5 * (square - (means[i] + other) + mean);
+        }
+    });
+    centred
 }
 
 #[cfg(test)]
@@ -151,7 +170,7 @@ mod tests {
         let mut rng = stream(1, 1, "planted", 0);
         let planted =
             BodyMap { dims: 3, coordinates: (0..60).map(|_| rng.random_range(-1.0..1.0)).collect() };
-        let scaling = ClassicalScaling::new(&distances(20, |i, j| euclidean(&planted, i, j))).unwrap();
+        let scaling = ClassicalScaling::new(&distances(20, |i, j| euclidean(&planted, i, j)), 4).unwrap();
         assert_eq!(scaling.positive(), 3);
         assert!(scaling.negative_share() < 1e-12);
         let found = scaling.coordinates(3).unwrap();

@@ -323,16 +323,15 @@ fn run_map(input: &Path, dims: usize, out: &Path) -> Result<()> {
     ensure!(dims >= 1, "--dims is 0, but must be at least 1");
     let distances = npy::read_distances(input)?;
     let in_file = || input.display().to_string();
-    let scaling = ClassicalScaling::new(&distances).with_context(in_file)?;
+    let scaling = ClassicalScaling::new(&distances, dims).with_context(in_file)?;
     let map = scaling.coordinates(dims).with_context(in_file)?;
     npy::write_body_map(out, &map)?;
     say(format!(
-        "body map of {} sensors in {dims} dimensions, in {}; {} eigenvalues are positive, negative ones make up \
-         {:.2} % of all magnitudes",
+        "body map of {} sensors in {dims} dimensions, in {}; its eigenvalues make up {:.2} % of the sum of squares \
+         of all",
         map.points(),
         out.display(),
-        scaling.positive(),
-        100.0 * scaling.negative_share()
+        100.0 * scaling.agreement(dims)
     ))
 }
 

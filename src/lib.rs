@@ -16,6 +16,7 @@ pub mod body_map;
 pub mod claims;
 pub mod conditions;
 pub mod distance;
+mod eigen;
 pub mod evaluate;
 pub mod figures;
 pub mod pipeline;

@@ -44,10 +44,10 @@ pub struct MappedBody {
 pub struct Facts {
     /// Sensors that showed one symbol throughout.
     pub constant_sensors: usize,
-    /// Dimensions that the distances span.
-    pub positive_eigenvalues: usize,
-    /// Share of negative eigenvalues in the sum of all magnitudes.
-    pub negative_eigenvalue_share: f64,
+    /// Eigenvalues of the map's dimensions, descending, bits².
+    pub eigenvalues: Vec<f64>,
+    /// How well the map agrees with the distances; see [`ClassicalScaling::agreement`].
+    pub map_agreement: f64,
 }
 
 /// A draw and its evaluation: a row of an experiment's `samples.csv`.
@@ -123,11 +123,11 @@ pub fn map_body(
     let symbols = quantise(&tactile, &settings.quantise);
     drop(tactile);
     let distances = information_metric(&symbols);
-    let scaling = ClassicalScaling::new(&distances)?;
+    let scaling = ClassicalScaling::new(&distances, dims)?;
     let facts = Facts {
         constant_sensors: symbols.constant_sensors().len(),
-        positive_eigenvalues: scaling.positive(),
-        negative_eigenvalue_share: scaling.negative_share(),
+        map_agreement: scaling.agreement(dims),
+        eigenvalues: scaling.eigenvalues.clone(),
     };
     let map = if scaling.positive() == 0 { None } else { Some(scaling.coordinates(dims)?) };
     let truth = Truth { labels: agent.labels(), tree: agent.tree() };

@@ -65,7 +65,7 @@ fn stages_by_hand_repeat_the_experiment() {
     run("simulate --settings small.toml --out body");
     run("distance body/tactile.npy --settings small.toml --out distance.npy");
     let map = run("map distance.npy --dims 4 --out body-map.npy");
-    assert!(map.contains("negative ones make up"), "{map}");
+    assert!(map.contains("its eigenvalues make up"), "{map}");
     let summary = run(
         "infer body-map.npy --settings small.toml --labels body/labels.csv --tree body/tree.csv --out schema",
     );

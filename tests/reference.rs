@@ -35,7 +35,7 @@ struct InformationMetric {
 struct Scaling {
     distances: Vec<Vec<f64>>,
     eigenvalues: Vec<f64>,
-    negative_share: f64,
+    agreement: f64,
     within: Vec<Vec<f64>>,
 }
 
@@ -152,13 +152,13 @@ fn information_metric_agrees_with_scikit_learn() {
 
 #[test]
 fn body_maps_agree_with_numpy_eigh() {
-    let Scaling { distances, eigenvalues, negative_share, within } = reference().classical_scaling;
+    let Scaling { distances, eigenvalues, agreement, within } = reference().classical_scaling;
     let sensors = distances.len();
-    let scaling = ClassicalScaling::new(&Distances { sensors, values: distances.concat() }).unwrap();
+    let scaling = ClassicalScaling::new(&Distances { sensors, values: distances.concat() }, sensors).unwrap();
     scaling.eigenvalues.iter().zip(&eigenvalues).for_each(|(found, expected)| close(*found, *expected, 1e-8));
-    close(scaling.negative_share(), negative_share, 1e-10);
+    close(scaling.agreement(3), agreement, 1e-10);
     let squared = distances.concat().iter().map(|d| d * d).collect();
-    let twin = ClassicalScaling::new(&Distances { sensors, values: squared }).unwrap();
+    let twin = ClassicalScaling::new(&Distances { sensors, values: squared }, 1).unwrap();
     assert!((twin.eigenvalues[0] - eigenvalues[0]).abs() > 1.0, "squaring once too often would be seen");
     let map = scaling.coordinates(3).unwrap();
     let row = |i: usize| &map.coordinates[3 * i..][..3];

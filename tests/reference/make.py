@@ -50,11 +50,11 @@ def classical_scaling():
     values, vectors = values[order], vectors[:, order]
     embedded = vectors[:, :3] * np.sqrt(values[:3])
     within = np.linalg.norm(embedded[:, None] - embedded[None], axis=2)
-    share = -values[values < 0].sum() / np.abs(values).sum()
+    agreement = (values[:3] ** 2).sum() / (values**2).sum()
     return {
         "distances": distances.tolist(),
         "eigenvalues": values.tolist(),
-        "negative_share": share,
+        "agreement": agreement,
         "within": within.tolist(),
     }
 

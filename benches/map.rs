@@ -1,0 +1,48 @@
+//! Distances → the time to a body map of 15 dimensions, in ms on all threads: `cargo bench --bench map`, with
+//! `-- --large` also for ten times as many sensors.
+
+use std::time::Instant;
+
+use bodyschema::body_map::ClassicalScaling;
+use bodyschema::distance::Distances;
+use bodyschema::streams::stream;
+use rand::RngExt;
+use rayon::prelude::*;
+
+/// d of the largest body map of the paper.
+const DIMS: usize = 15;
+
+/// City-block distances between points of 30 dimensions, each of less spread than the one before: eigenvalues
+/// that fall as slowly as those of the information metric, and some of them negative. `map.py` has the same.
+fn distances(sensors: usize) -> Distances {
+    let mut rng = stream(1, 1, "bench", 0);
+    let spread = |k: usize| 1.0 / (1.0 + k as f64 / 5.0);
+    let points: Vec<f64> =
+        (0..sensors * 30).map(|at| spread(at % 30) * rng.random_range(-1.0..1.0)).collect();
+    let between = |i: usize, j: usize| {
+        let pairs = points[30 * i..][..30].iter().zip(&points[30 * j..][..30]);
+        pairs.map(|(a, b)| (a - b).abs()).sum()
+    };
+    let values = (0..sensors * sensors).into_par_iter().map(|at| between(at / sensors, at % sensors));
+    Distances { sensors, values: values.collect() }
+}
+
+fn main() {
+    let large = std::env::args().any(|argument| argument == "--large");
+    for (sensors, measurements) in [(840, 31), (8_400, 3)] {
+        if sensors > 840 && !large {
+            continue;
+        }
+        let distances = distances(sensors);
+        let mut times: Vec<f64> = (0..measurements)
+            .map(|_| {
+                let start = Instant::now();
+                let scaling = ClassicalScaling::new(&distances, DIMS).expect("it converges");
+                scaling.coordinates(DIMS).expect("the distances span more");
+                start.elapsed().as_secs_f64() * 1e3
+            })
+            .collect();
+        times.sort_by(f64::total_cmp);
+        println!("{sensors} sensors to {DIMS} dimensions: {:.1} ms", times[measurements / 2]);
+    }
+}
