@@ -80,7 +80,7 @@ fn lanczos(matrix: MatRef<'_, f64>, wanted: usize, block: usize) -> Option<Eigen
     let mut rng = stream(0, 0, "eigenvectors", 0);
     let mut next = Mat::from_fn(n, block, |_, _| rng.random_range(-1.0..1.0));
     let mut held = 0;
-    for _restart in 0..MOST_RESTARTS {
+    for _ in 0..MOST_RESTARTS {
         while held < most {
             let vectors = orthonormal(next, basis.subcols(0, held));
             next = product(matrix, vectors.as_ref());
@@ -110,12 +110,18 @@ fn lanczos(matrix: MatRef<'_, f64>, wanted: usize, block: usize) -> Option<Eigen
 
 /// An orthonormal basis of what `vectors` span beside the orthonormal `basis`, to which it is orthogonal.
 ///
-/// The second pass removes the rounding of the first, which is of any size where little or nothing is left.
+/// Where little or nothing is left beside it, what is left is rounding, which points along the basis too: a pass
+/// counts only if it found unit vectors that were nearly orthogonal before it.
 fn orthonormal(mut vectors: Mat<f64>, basis: MatRef<'_, f64>) -> Mat<f64> {
-    for _pass in 0..2 {
+    const MOST_PASSES: usize = 6;
+    for pass in 0..MOST_PASSES {
         let along = basis.transpose() * &vectors;
+        let nearly = along.norm_l2() < 0.1;
         vectors -= basis * along;
         vectors = vectors.qr().compute_thin_Q();
+        if pass > 0 && nearly {
+            break;
+        }
     }
     vectors
 }
