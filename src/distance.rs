@@ -77,8 +77,8 @@ pub fn information_metric(symbols: &Symbols) -> Distances {
 /// H(X|Y) + H(Y|X) from joint counts: Σ c_xy [(log₂ c_x − log₂ c_xy) + (log₂ c_y − log₂ c_xy)] / T.
 ///
 /// Every term is at least 0 and exactly 0 where a symbol tells the other, so that neither rounding nor
-/// cancellation can make a distance negative. `logarithms` has log₂ c for all c from 1 to T: to look them
-/// up is TODO times as fast as to find them.
+/// cancellation can make a distance negative. `logarithms` has log₂ c for all c from 1 to T, and 0 for c = 0: T
+/// of them are found, not two for every cell of every pair.
 fn metric_of_counts(joint: &[u32], first: &[u32], second: &[u32], logarithms: &[f64]) -> f64 {
     let log = |count: u32| logarithms[count as usize];
     let mut sum = 0.0;
@@ -119,7 +119,8 @@ struct BitPlanes {
     bits: Vec<Lanes>,
 }
 
-/// Planes of a sensor's tile that are counted together with as many others, each loaded word 4 times.
+/// Planes that are counted together with as many others: each loaded word is used 4 times, and 16 sums fit
+/// the registers.
 const BLOCK: usize = 4;
 
 impl BitPlanes {
@@ -320,6 +321,28 @@ mod tests {
                     assert!((distances.get(i, j) - expected).abs() < 1e-12, "N = {levels}, {i}, {j}");
                     assert_eq!(distances.get(i, j), distances.get(j, i));
                 }
+            }
+        }
+    }
+
+    #[test]
+    fn bit_planes_count_as_the_definition_does_by_any_instructions() {
+        for (levels, samples) in [(2, 1), (3, 63), (4, 511), (4, 512), (5, 513), (8, 1000), (10, 1537)] {
+            let symbols = random_symbols(19, samples, levels);
+            let planes = BitPlanes::new(&symbols);
+            let marginals = planes.marginals(&symbols);
+            let (mut joint, mut expected) = (vec![0; levels * levels], vec![0; levels * levels]);
+            for (i, j) in (0..19).flat_map(|i| (i..19).map(move |j| (i, j))) {
+                planes.count(i / TILE * TILE, j / TILE * TILE).joint(i, j, &marginals, &mut joint);
+                count(&symbols, i, j, &mut expected);
+                assert_eq!(joint, expected, "N = {levels}, T = {samples}, {i}, {j}");
+            }
+            let planes: Vec<&[Lanes]> = planes.bits.chunks_exact(planes.length).collect();
+            let four = |from: usize| std::array::from_fn(|k| planes[from + k]);
+            for from in (0..planes.len()).step_by(BLOCK) {
+                let block = Block { first: four(0), second: four(from) };
+                assert_eq!(block.count(), block.call(), "chosen and portable instructions");
+                assert_eq!(block.count(), Arch::new().dispatch(block), "without VPOPCNTDQ");
             }
         }
     }
