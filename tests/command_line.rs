@@ -111,9 +111,11 @@ fn an_experiment_is_the_same_on_any_number_of_threads_and_complete() {
         let report = fs::read_to_string(out.join("report.html")).unwrap();
         assert!(report.contains("published 84.6 % | reproduced"));
 
-        let manifest: serde_json::Value =
-            serde_json::from_str(&fs::read_to_string(out.join("manifest.json")).unwrap()).unwrap();
-        assert_eq!(manifest["threads"], jobs);
+        let json = |name: &str| -> serde_json::Value {
+            serde_json::from_str(&fs::read_to_string(out.join(name)).unwrap()).unwrap()
+        };
+        assert_eq!(json("run.json")["threads"], jobs);
+        let manifest = json("manifest.json");
         assert_eq!(manifest["inputs"][0]["sha256"], sha256(&folder.path().join("small.toml")).unwrap());
         let outputs: BTreeMap<String, Vec<u8>> = manifest["outputs"]
             .as_array()
