@@ -13,12 +13,14 @@ import sys
 root = pathlib.Path(__file__).resolve().parent.parent
 results = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else root / "results"
 readme = root / "README.md"
+shown = root / "reproduce" / "shown"
+shown.mkdir(exist_ok=True)
 text = readme.read_text()
 for name, figure in [("exp1", "fig10b-tree"), ("exp2", "fig11b-tree")]:
     claims = (results / name / "claims.md").read_text().strip()
     text, found = re.subn(
-        rf"(<!-- {name} -->\n).*?(\n<!-- /{name} -->)", lambda marks: marks[1] + claims + marks[2], text, flags=re.S
+        rf"(<!-- {name} -->\n).*?(<!-- /{name} -->)", lambda marks: f"{marks[1]}{claims}\n{marks[2]}", text, flags=re.S
     )
     assert found == 1, f"README.md has no marks of {name}"
-    shutil.copy(results / name / "figures" / f"{figure}.svg", root / "reproduce" / "shown" / f"{figure}.svg")
+    shutil.copy(results / name / "figures" / f"{figure}.svg", shown / f"{figure}.svg")
 readme.write_text(text)
