@@ -4,8 +4,7 @@
 # results/NAME unless --out says otherwise. Status: 0 every claim reproduced, 1 some claim not, 2 trouble.
 set -euo pipefail
 root=$(CDPATH= cd -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")/.." && pwd)
-# .ci/run takes the profile that the tests are built with.
-manifest=(--profile "${BODYSCHEMA_PROFILE:-release}" --locked --manifest-path "$root/Cargo.toml")
+manifest=(--release --locked --manifest-path "$root/Cargo.toml")
 name=$1
 shift
 
