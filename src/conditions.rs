@@ -3,7 +3,7 @@
 use crate::baselines::Clustering;
 use crate::pipeline::{BaselineRecord, Record};
 use crate::schema::Model;
-use crate::statistics::{Estimate, Resamples, mean, rate};
+use crate::statistics::{Estimate, Resamples, mean, rate, spread};
 use crate::streams::stream;
 
 /// A condition of an experiment.
@@ -51,7 +51,7 @@ impl Conditions {
                 Some(_) => {}
             }
         }
-        Self { records: best, ..self.clone() }
+        Self { records: best, simulations: self.simulations, resamples: self.resamples.clone() }
     }
 
     /// All conditions that were run, by mixture, then p, then d.
@@ -172,13 +172,8 @@ pub fn baseline_estimates(records: &[BaselineRecord]) -> Vec<BaselineEstimate> {
         .chunk_by(|a, b| place(a) == place(b))
         .map(|group| {
             let aris: Vec<f64> = group.iter().map(|record| record.ari).collect();
-            let spread = |ends: [f64; 2]| (aris.len() > 1).then_some((ends[0], ends[1]));
-            let ends = [
-                aris.iter().copied().fold(f64::INFINITY, f64::min),
-                aris.iter().copied().fold(f64::NEG_INFINITY, f64::max),
-            ];
             let BaselineRecord { coordination, dimension, method, clusters, .. } = group[0];
-            let ari = Estimate { simulations: aris.len(), spread: spread(ends), ..mean(&aris) };
+            let ari = Estimate { simulations: aris.len(), spread: spread(&aris), ..mean(&aris) };
             BaselineEstimate { method, clusters, coordination, dimension, ari }
         })
         .collect()

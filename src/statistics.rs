@@ -76,6 +76,13 @@ fn student(n: usize) -> f64 {
     StudentsT::new(0.0, 1.0, (n - 1) as f64).expect("n > 1").inverse_cdf(0.975)
 }
 
+/// The lowest and the highest of several values.
+pub fn spread(values: &[f64]) -> Option<(f64, f64)> {
+    let least = values.iter().copied().fold(f64::INFINITY, f64::min);
+    let most = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    (values.len() > 1).then_some((least, most))
+}
+
 /// The quantile of `sorted` values, not empty, with linear interpolation (NumPy's default).
 pub fn quantile(sorted: &[f64], share: f64) -> f64 {
     let at = share * (sorted.len() - 1) as f64;
@@ -132,12 +139,10 @@ impl Resamples {
         means.sort_by(f64::total_cmp);
         let widened = (simulations as f64 / (simulations - 1) as f64).sqrt() * student(simulations);
         let tail = Normal::standard().cdf(-widened);
-        let least = values.iter().copied().fold(f64::INFINITY, f64::min);
-        let most = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         Estimate {
             interval: Some((low.min(quantile(&means, tail)), high.max(quantile(&means, 1.0 - tail)))),
             simulations,
-            spread: Some((least, most)),
+            spread: spread(&values),
             ..pooled
         }
     }
