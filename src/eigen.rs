@@ -14,14 +14,18 @@ use crate::streams::stream;
 
 /// Vectors of a block beyond the wanted ones: how fast the last wanted eigenvector converges depends on how far
 /// its eigenvalue is from the first that a block has no room for.
-const SPARE: usize = 9;
+const SPARE: usize = 5;
 
 /// Blocks of the basis from which eigenvectors are combined, and those of them that survive a restart.
-const BLOCKS: usize = 4;
+const BLOCKS: usize = 6;
 const KEPT_BLOCKS: usize = 2;
 
 /// Restarts after which the whole matrix is decomposed instead; fewer than ten are usual.
 const MOST_RESTARTS: usize = 300;
+
+/// Restarts for which the images of the basis are combined before they are found anew: a product with the matrix
+/// is what takes the time.
+const TRUSTED_RESTARTS: usize = 8;
 
 /// Length of B v − λ v at which an eigenvector counts as found, in units of ε √n |λ|max. The rounding of a
 /// product leaves about four.
@@ -80,7 +84,7 @@ fn lanczos(matrix: MatRef<'_, f64>, wanted: usize, block: usize) -> Option<Eigen
     let mut rng = stream(0, 0, "eigenvectors", 0);
     let mut next = Mat::from_fn(n, block, |_, _| rng.random_range(-1.0..1.0));
     let mut held = 0;
-    for _ in 0..MOST_RESTARTS {
+    for restart in 1..=MOST_RESTARTS {
         while held < most {
             let vectors = orthonormal(next, basis.subcols(0, held));
             next = product(matrix, vectors.as_ref());
@@ -88,19 +92,26 @@ fn lanczos(matrix: MatRef<'_, f64>, wanted: usize, block: usize) -> Option<Eigen
             images.subcols_mut(held, block).copy_from(&next);
             held += block;
         }
-        let ritz = (basis.transpose() * &images).self_adjoint_eigen(Side::Lower).ok()?;
+        let ritz = product(basis.transpose(), images.as_ref()).self_adjoint_eigen(Side::Lower).ok()?;
         let values: Vec<f64> = ritz.S().column_vector().iter().rev().copied().collect();
-        next = orthonormal(next, basis.as_ref());
-        let vectors = &basis * ritz.U().reverse_cols().subcols(0, kept);
-        // Combined from the images held, they would gather rounding with each restart.
-        let applied = product(matrix, vectors.as_ref());
         let magnitude = values[0].abs().max(values[most - 1].abs());
         let small = RESIDUAL * f64::EPSILON * (n as f64).sqrt() * magnitude;
-        let residual = |k: usize| (applied.col(k) - faer::Scale(values[k]) * vectors.col(k)).norm_l2();
-        if (0..wanted).all(|k| residual(k) <= small) {
-            let vectors = vectors.subcols(0, wanted).to_owned();
-            return Some(Eigen { values: values[..wanted].to_vec(), vectors });
+        let found = |vectors: &Mat<f64>, applied: &Mat<f64>| {
+            let residual = |k: usize| (applied.col(k) - faer::Scale(values[k]) * vectors.col(k)).norm_l2();
+            (0..wanted).all(|k| residual(k) <= small)
+        };
+        let combined = ritz.U().reverse_cols().subcols(0, kept);
+        let vectors = product(basis.as_ref(), combined);
+        let mut applied = product(images.as_ref(), combined);
+        if found(&vectors, &applied) || restart.is_multiple_of(TRUSTED_RESTARTS) {
+            // Combined from images that are held, they gather rounding with each restart.
+            applied = product(matrix, vectors.as_ref());
+            if found(&vectors, &applied) {
+                let vectors = vectors.subcols(0, wanted).to_owned();
+                return Some(Eigen { values: values[..wanted].to_vec(), vectors });
+            }
         }
+        next = orthonormal(next, basis.as_ref());
         basis.subcols_mut(0, kept).copy_from(&vectors);
         images.subcols_mut(0, kept).copy_from(&applied);
         held = kept;
@@ -115,31 +126,34 @@ fn lanczos(matrix: MatRef<'_, f64>, wanted: usize, block: usize) -> Option<Eigen
 fn orthonormal(mut vectors: Mat<f64>, basis: MatRef<'_, f64>) -> Mat<f64> {
     const MOST_PASSES: usize = 6;
     for pass in 0..MOST_PASSES {
-        let along = basis.transpose() * &vectors;
-        let nearly = along.norm_l2() < 0.1;
-        vectors -= basis * along;
+        let along = product(basis.transpose(), vectors.as_ref());
+        let along_length = along.norm_l2();
+        vectors -= product(basis, along.as_ref());
+        // Taking this off unit vectors changes their lengths and angles by its square, which is nothing.
+        if pass > 0 && along_length.powi(2) < f64::EPSILON {
+            break;
+        }
         vectors = vectors.qr().compute_thin_Q();
-        if pass > 0 && nearly {
+        if pass > 0 && along_length < 0.1 {
             break;
         }
     }
     vectors
 }
 
-/// A symmetric matrix times a few vectors.
-fn product(matrix: MatRef<'_, f64>, vectors: MatRef<'_, f64>) -> Mat<f64> {
-    let mut product = Mat::zeros(matrix.nrows(), vectors.ncols());
+/// A matrix times another, by all threads.
+fn product(left: MatRef<'_, f64>, right: MatRef<'_, f64>) -> Mat<f64> {
+    let mut product = Mat::zeros(left.nrows(), right.ncols());
     let mut parts: Vec<(usize, MatMut<'_, f64>)> = Vec::new();
     let mut rest = product.as_mut();
-    for row in (0..matrix.nrows()).step_by(ROWS) {
-        let (part, below) = rest.split_at_row_mut(ROWS.min(matrix.nrows() - row));
+    for row in (0..left.nrows()).step_by(ROWS) {
+        let (part, below) = rest.split_at_row_mut(ROWS.min(left.nrows() - row));
         parts.push((row, part));
         rest = below;
     }
     parts.into_par_iter().for_each(|(row, part)| {
-        // Columns in place of rows, which are the same and lie together.
-        let rows = matrix.subcols(row, part.nrows()).transpose();
-        matmul(part, Accum::Replace, rows, vectors, 1.0, Par::Seq);
+        let rows = left.subrows(row, part.nrows());
+        matmul(part, Accum::Replace, rows, right, 1.0, Par::Seq);
     });
     product
 }
