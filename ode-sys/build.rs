@@ -46,7 +46,7 @@ fn generate_bindings(ode: &pkg_config::Library) {
         "dJointAttach",
         "dJointGetType",
         "dJointSetUniversal(Anchor|Axis1|Axis2|Param)",
-        "dJointGetUniversal(Anchor|Anchor2|Angle1|Angle2|Angle1Rate|Angle2Rate|Param)",
+        "dJointGetUniversal(Anchor|Anchor2|Angles|Angle1Rate|Angle2Rate|Param)",
         "dJointAddUniversalTorques",
         "ode_shim_.*",
     ];

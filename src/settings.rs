@@ -105,8 +105,6 @@ pub struct Motion {
     pub damping: f64,
     /// What the controller takes as the distance to the target.
     pub error: AngleError,
-    /// Most torque that holds a locked joint, N·m.
-    pub lock_torque: f64,
 }
 
 /// Time in the physics engine, s.
@@ -332,7 +330,6 @@ impl Settings {
         count("motion.epoch", self.motion.epoch)?;
         gain("motion.stiffness", self.motion.stiffness)?;
         gain("motion.damping", self.motion.damping)?;
-        physical("motion.lock_torque", self.motion.lock_torque)?;
 
         physical("physics.step", self.physics.step)?;
         positive("physics.duration", self.physics.duration)?;
@@ -392,7 +389,7 @@ impl Settings {
         check(
             "baselines.clusters",
             format!("{clusters:?}"),
-            clusters.iter().all(|&clusters| (1..=sensors).contains(&clusters)),
+            clusters.iter().all(|&clusters| (1..=5 * sensors).contains(&clusters)),
             "a list of numbers from 1 to the number of sensors",
         )?;
         check(

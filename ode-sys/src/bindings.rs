@@ -405,10 +405,7 @@ unsafe extern "C" {
     pub fn dJointGetUniversalParam(arg1: dJointID, parameter: ::std::os::raw::c_int) -> dReal;
 }
 unsafe extern "C" {
-    pub fn dJointGetUniversalAngle1(arg1: dJointID) -> dReal;
-}
-unsafe extern "C" {
-    pub fn dJointGetUniversalAngle2(arg1: dJointID) -> dReal;
+    pub fn dJointGetUniversalAngles(arg1: dJointID, angle1: *mut dReal, angle2: *mut dReal);
 }
 unsafe extern "C" {
     pub fn dJointGetUniversalAngle1Rate(arg1: dJointID) -> dReal;

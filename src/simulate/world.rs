@@ -54,7 +54,6 @@ pub struct World {
     joints: Vec<ode::dJointID>,
     step: f64,
     steps: u64,
-    lock_torque: f64,
     /// Whether the engine gave up in a step, after which the world may not be touched.
     failed: bool,
 }
@@ -161,7 +160,6 @@ impl World {
                 joints,
                 step: settings.physics.step,
                 steps: 0,
-                lock_torque: settings.motion.lock_torque,
                 failed: false,
             };
             for joint in 0..world.joints.len() {
@@ -188,14 +186,14 @@ impl World {
         }
         for part in 0..self.bodies.len() {
             let (linear, angular) = self.velocity(part);
-            let speed = |v: Vector3| v.iter().map(|x| x * x).sum::<f64>().sqrt();
             // Beyond half a turn a step, a rotation cannot be told from its opposite; and no real motion
             // of such bodies comes near a kilometre a second.
-            for (speed, limit, unit) in
-                [(speed(angular), std::f64::consts::PI / self.step, "rad/s"), (speed(linear), 1e3, "m/s")]
+            for (velocity, limit, unit) in
+                [(angular, std::f64::consts::PI / self.step, "rad/s"), (linear, 1e3, "m/s")]
             {
-                if !speed.is_finite() || speed >= limit {
-                    return Err(unstable(format!("part {part} reached {speed:.3e} {unit}")));
+                let squared: f64 = velocity.iter().map(|x| x * x).sum();
+                if squared.is_nan() || squared >= limit * limit {
+                    return Err(unstable(format!("part {part} reached {:.3e} {unit}", squared.sqrt())));
                 }
             }
         }
@@ -227,13 +225,10 @@ impl World {
 
     /// Both angles of a joint, rad in [−π, π]: the parent relative to the child, 0 in the rest pose.
     pub fn angles(&self, joint: usize) -> [f64; 2] {
-        // SAFETY: the joint is live and universal.
-        unsafe {
-            [
-                ode::dJointGetUniversalAngle1(self.joints[joint]),
-                ode::dJointGetUniversalAngle2(self.joints[joint]),
-            ]
-        }
+        let (mut first, mut second) = (0.0, 0.0);
+        // SAFETY: the joint is live and universal, and both angles are written where they may be.
+        unsafe { ode::dJointGetUniversalAngles(self.joints[joint], &mut first, &mut second) }
+        [first, second]
     }
 
     /// Rates of both angles, rad/s.
@@ -255,9 +250,9 @@ impl World {
         unsafe { ode::dJointAddUniversalTorques(self.joints[joint], torques[0], torques[1]) }
     }
 
-    /// Holds a joint at its present angles by a motor of zero velocity.
+    /// Holds a joint at its present angles by a motor of zero velocity and unlimited torque.
     pub fn lock(&mut self, joint: usize) {
-        self.set_motor(joint, self.lock_torque);
+        self.set_motor(joint, f64::INFINITY);
     }
 
     /// Lets a joint turn freely.
