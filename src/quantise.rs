@@ -72,13 +72,20 @@ pub fn quantise(tactile: &Tactile, settings: &Quantise) -> Symbols {
 /// Upper bounds of all levels but the last: 0 for no pressure, then the quantiles of the positive values.
 fn equal_frequency(pressures: &[f32], levels: usize) -> Vec<f32> {
     let mut positive: Vec<f32> = pressures.iter().copied().filter(|pressure| *pressure > 0.0).collect();
-    positive.sort_unstable_by(f32::total_cmp);
-    let quantile = |level: usize| {
+    let mut thresholds = vec![0.0];
+    // Selected, not sorted: each quantile is sought among the values above the one before.
+    let mut below = 0;
+    for level in 1..levels - 1 {
         // The last of the lowest `level` of `levels - 1` shares.
         let rank = (positive.len() * level).div_ceil(levels - 1);
-        rank.checked_sub(1).map(|last| positive[last])
-    };
-    std::iter::once(0.0).chain((1..levels - 1).filter_map(quantile)).collect()
+        let Some(last) = rank.checked_sub(1) else { continue };
+        if last >= below {
+            positive[below..].select_nth_unstable_by(last - below, f32::total_cmp);
+            below = last + 1;
+        }
+        thresholds.push(positive[last]);
+    }
+    thresholds
 }
 
 /// Upper bounds of all levels but the last, evenly spaced over the range of the values.
@@ -90,7 +97,10 @@ fn equal_width(pressures: &[f32], levels: usize) -> Vec<f32> {
 
 #[cfg(test)]
 mod tests {
+    use rand::RngExt;
+
     use super::*;
+    use crate::streams::stream;
 
     fn symbols(pressures: &[f32], sensors: usize, scheme: Scheme, levels: usize) -> Vec<u8> {
         let tactile = Tactile { samples: pressures.len() / sensors, pressures: pressures.to_vec() };
@@ -101,6 +111,21 @@ mod tests {
     fn positive_values_are_shared_equally() {
         let pressures = [0.0, 5.0, 1.0, 0.0, 6.0, 2.0, 4.0, 3.0];
         assert_eq!(symbols(&pressures, 1, Scheme::PerSensor, 4), [0, 3, 1, 0, 3, 1, 2, 2]);
+    }
+
+    #[test]
+    fn thresholds_are_quantiles_of_the_sorted_values() {
+        let mut rng = stream(1, 1, "pressures", 0);
+        for (count, levels) in [(0, 4), (1, 4), (2, 4), (3, 9), (40, 256), (1000, 2), (1000, 3), (1001, 8)] {
+            let pressures: Vec<f32> = (0..count).map(|_| rng.random_range(-2..40) as f32 / 4.0).collect();
+            let mut sorted: Vec<f32> = pressures.iter().copied().filter(|pressure| *pressure > 0.0).collect();
+            sorted.sort_by(f32::total_cmp);
+            let rank = |level: usize| (sorted.len() * level).div_ceil(levels - 1);
+            let quantiles =
+                (1..levels - 1).filter(|&level| rank(level) > 0).map(|level| sorted[rank(level) - 1]);
+            let expected: Vec<f32> = std::iter::once(0.0).chain(quantiles).collect();
+            assert_eq!(equal_frequency(&pressures, levels), expected, "{count} values, {levels} levels");
+        }
     }
 
     #[test]
