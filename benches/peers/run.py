@@ -41,10 +41,13 @@ def peer(module, call, **environment):
     return float(output(sys.executable, "-c", code, **environment))
 
 
-def simulate(folder, round):
-    text = bench("simulate", round)
-    ours = seconds(text, r"simulate: ([\d.]+)") + seconds(text, r"sense: ([\d.]+)")
-    return ours, float(output(str(folder / "bare_loop"), "1000000"))
+def simulate(*torque):
+    def run(folder, round):
+        text = bench("simulate", round)
+        ours = seconds(text, r"simulate: ([\d.]+)") + seconds(text, r"sense: ([\d.]+)")
+        return ours, float(output(str(folder / "bare_loop"), "1000000", *torque))
+
+    return run
 
 
 def distance(levels):
@@ -69,7 +72,8 @@ def schema(call):
 
 
 STAGES = [
-    ("simulate + sense", "1,000,000 steps, 100,000 x 840 pressures", "bare loop of dWorldStep, in C", simulate),
+    ("simulate + sense", "1,000,000 steps, 100,000 x 840 pressures", "bare loop of dWorldStep, in C", simulate()),
+    ("simulate + sense", "the same", "the same, locks limited to 1000 N m", simulate("1000")),
     ("distance", "840 sensors, T = 100,000, N = 4", "NumPy one-hot product", distance(4)),
     ("distance", "the same, N = 8", "NumPy one-hot product", distance(8)),
     ("map", "840 sensors to 15 dimensions", "numpy.linalg.eigh", map_840),
