@@ -3,6 +3,7 @@
 
 use std::error::Error;
 use std::path::Path;
+use std::process::Command;
 use std::time::Instant;
 
 use bodyschema::agent::Agent;
@@ -23,6 +24,9 @@ use serde::Serialize;
 /// Measurements, of which the least is taken: noise of the machine only adds.
 const MEASUREMENTS: usize = 3;
 
+/// Argument by which this program measures one size only: the number of its series, and the size.
+const ONE: &str = "--one";
+
 /// A stage at one size of one of its inputs.
 #[derive(Serialize)]
 struct Row {
@@ -34,12 +38,13 @@ struct Row {
     memory_mib: f64,
 }
 
-/// Sizes of a variable, and the exponent of time that theory expects; none where it expects no power.
+/// Sizes of a variable, and the exponents of time and memory that theory expects; none where it expects no power.
 struct Series {
     stage: &'static str,
     variable: &'static str,
     sizes: &'static [usize],
-    expected: Option<f64>,
+    time: Option<f64>,
+    memory: Option<f64>,
     run: fn(usize) -> Measured,
 }
 
@@ -158,105 +163,120 @@ const SERIES: &[Series] = &[
         stage: "simulate",
         variable: "T",
         sizes: &[6_250, 12_500, 25_000, 50_000, 100_000],
-        expected: Some(1.0),
+        time: Some(1.0),
+        memory: Some(1.0),
         run: simulate_samples,
     },
     Series {
         stage: "sense",
         variable: "T",
         sizes: &[12_500, 25_000, 50_000, 100_000],
-        expected: Some(1.0),
+        time: Some(1.0),
+        memory: Some(1.0),
         run: |t| sense_size(t, 840),
     },
     Series {
         stage: "sense",
         variable: "M",
         sizes: &[420, 840, 2_100, 4_200, 8_400],
-        expected: Some(1.0),
+        time: Some(1.0),
+        memory: Some(1.0),
         run: |m| sense_size(10_000, m),
     },
     Series {
         stage: "quantise",
         variable: "T",
         sizes: &[12_500, 25_000, 50_000, 100_000],
-        expected: Some(1.0),
+        time: Some(1.0),
+        memory: Some(1.0),
         run: |t| quantise_size(t, 840),
     },
     Series {
         stage: "quantise",
         variable: "M",
         sizes: &[420, 840, 2_100, 4_200, 8_400],
-        expected: Some(1.0),
+        time: Some(1.0),
+        memory: Some(1.0),
         run: |m| quantise_size(10_000, m),
     },
     Series {
         stage: "distance",
         variable: "T",
         sizes: &[12_500, 25_000, 50_000, 100_000],
-        expected: Some(1.0),
+        time: Some(1.0),
+        memory: Some(1.0),
         run: |t| distance_size(t, 840, 4),
     },
     Series {
         stage: "distance",
         variable: "M",
         sizes: &[420, 840, 2_100, 4_200, 8_400],
-        expected: Some(2.0),
+        time: Some(2.0),
+        memory: None,
         run: |m| distance_size(10_000, m, 4),
     },
     Series {
         stage: "distance",
         variable: "N - 1",
         sizes: &[1, 3, 5, 7],
-        expected: Some(2.0),
+        time: Some(2.0),
+        memory: Some(1.0),
         run: |n| distance_size(50_000, 840, n + 1),
     },
     Series {
         stage: "map",
         variable: "M",
         sizes: &[420, 840, 2_100, 4_200, 8_400],
-        expected: Some(2.0),
+        time: Some(2.0),
+        memory: Some(2.0),
         run: map_size,
     },
     Series {
         stage: "schema",
         variable: "n",
         sizes: &[420, 840, 2_100, 4_200, 8_400],
-        expected: Some(1.0),
+        time: Some(1.0),
+        memory: None,
         run: |n| sweeps(n, 14, 10, 5),
     },
     Series {
         stage: "schema",
         variable: "d",
         sizes: &[7, 15, 31, 47],
-        expected: Some(2.0),
+        time: Some(2.0),
+        memory: None,
         run: |d| sweeps(840, d, 10, 5),
     },
     Series {
         stage: "schema",
         variable: "K",
         sizes: &[10, 20, 40, 80],
-        expected: Some(1.0),
+        time: Some(1.0),
+        memory: None,
         run: |k| sweeps(840, 14, k, 5),
     },
     Series {
         stage: "schema",
         variable: "parts",
         sizes: &[2, 4, 8, 16],
-        expected: Some(2.0),
+        time: Some(2.0),
+        memory: None,
         run: |parts| sweeps(840, 14, 20, parts),
     },
     Series {
         stage: "schema",
         variable: "chains",
         sizes: &[2, 4, 8, 16],
-        expected: Some(1.0),
+        time: Some(1.0),
+        memory: None,
         run: |count| chains(840, 14, 10, 5, count),
     },
     Series {
         stage: "schema",
         variable: "threads",
         sizes: &[1, 2],
-        expected: Some(-1.0),
+        time: Some(-1.0),
+        memory: None,
         run: |threads| {
             let pool =
                 rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads can be started");
@@ -265,38 +285,64 @@ const SERIES: &[Series] = &[
     },
 ];
 
-/// The exponent of the power of size that fits times best.
-fn exponent(rows: &[&Row], value: impl Fn(&Row) -> f64) -> f64 {
+/// The exponent of the power of size that fits values best; none where one is nothing.
+fn exponent(rows: &[&Row], value: impl Fn(&Row) -> f64) -> Option<f64> {
+    if rows.iter().any(|row| value(row) <= 0.0) {
+        return None;
+    }
     let logs: Vec<(f64, f64)> = rows.iter().map(|row| ((row.size as f64).ln(), value(row).ln())).collect();
     let n = logs.len() as f64;
     let (x, y) = logs.iter().fold((0.0, 0.0), |sum, log| (sum.0 + log.0 / n, sum.1 + log.1 / n));
     let over: f64 = logs.iter().map(|log| (log.0 - x) * (log.1 - y)).sum();
-    over / logs.iter().map(|log| (log.0 - x).powi(2)).sum::<f64>()
+    Some(over / logs.iter().map(|log| (log.0 - x).powi(2)).sum::<f64>())
+}
+
+/// Measures one size in a process of its own, whose memory holds nothing of other sizes.
+fn in_own_process(series: usize, size: usize) -> Result<Measured, Box<dyn Error>> {
+    let arguments = [ONE.to_owned(), series.to_string(), size.to_string()];
+    let output = Command::new(std::env::current_exe()?).args(arguments).output()?;
+    let text = String::from_utf8(output.stdout)?;
+    let (seconds, memory) = text.trim().split_once(' ').ok_or("the measurement failed")?;
+    Ok((seconds.parse()?, memory.parse()?))
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
+    let arguments: Vec<String> = std::env::args().collect();
+    if let [_, one, series, size] = &arguments[..]
+        && one == ONE
+    {
+        let (seconds, memory) = (SERIES[series.parse::<usize>()?].run)(size.parse()?);
+        println!("{seconds} {memory}");
+        return Ok(());
+    }
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("benches");
     let mut rows = Vec::new();
     let mut table = String::from(
-        "| stage | grows with | sizes | seconds | MiB | exponent of time | expected |\n|---|---|---|---|---|---|---|\n",
+        "| stage | grows with | sizes | seconds | exponent | expected | MiB | exponent | expected |\n\
+         |---|---|---|---|---|---|---|---|---|\n",
     );
-    for &Series { stage, variable, sizes, expected, run } in SERIES {
+    for (at, &Series { stage, variable, sizes, time, memory, .. }) in SERIES.iter().enumerate() {
         let first = rows.len();
         for &size in sizes {
-            let (seconds, memory_mib) = run(size);
+            let (seconds, memory_mib) = in_own_process(at, size)?;
             eprintln!("{stage}: {variable} = {size}: {seconds:.4} s, {memory_mib:.1} MiB");
             rows.push(Row { stage, variable, size, seconds, memory_mib });
         }
         let own: Vec<&Row> = rows[first..].iter().collect();
         let list =
             |text: &dyn Fn(&Row) -> String| own.iter().map(|row| text(row)).collect::<Vec<_>>().join(", ");
+        let or_none =
+            |exponent: Option<f64>| exponent.map_or("none".to_owned(), |power| format!("{power:.2}"));
         table += &format!(
-            "| {stage} | {variable} | {} | {} | {} | {:.2} | {} |\n",
+            "| {stage} | {variable} | {} | {} | {} | {} | {} | {} | {} |\n",
             list(&|row| row.size.to_string()),
             list(&|row| format!("{:.3}", row.seconds)),
+            or_none(exponent(&own, |row| row.seconds)),
+            or_none(time),
             list(&|row| format!("{:.0}", row.memory_mib)),
-            exponent(&own, |row| row.seconds),
-            expected.map_or("none".to_owned(), |expected| expected.to_string()),
+            // Below a few MiB, what is measured is the allocator's habits.
+            or_none(exponent(&own, |row| if row.memory_mib < 4.0 { 0.0 } else { row.memory_mib })),
+            or_none(memory),
         );
     }
     write_rows(&folder.join("scaling.csv"), &rows)?;
@@ -304,42 +350,55 @@ fn main() -> Result<(), Box<dyn Error>> {
     draw(&folder.join("scaling.svg"), &rows)
 }
 
-/// A panel for each series, both axes logarithmic.
+/// A panel for each series, all axes logarithmic: time on the left, memory on the right.
 fn draw(path: &Path, rows: &[Row]) -> Result<(), Box<dyn Error>> {
-    let colour = RGBColor(0, 114, 178);
-    let area = SVGBackend::new(path, (900, 900)).into_drawing_area();
+    let (time, memory, power) = (RGBColor(0, 114, 178), RGBColor(213, 94, 0), RGBColor(150, 150, 150));
+    let area = SVGBackend::new(path, (1080, 1000)).into_drawing_area();
     area.fill(&WHITE)?;
+    let title = "filled, left: time, s; open, right: memory, MiB; grey: the expected power of time";
+    let area = area.titled(title, ("sans-serif", 15))?;
     for (panel, series) in area.split_evenly((5, 3)).iter().zip(SERIES) {
-        let own: Vec<(f64, f64)> = rows
-            .iter()
-            .filter(|row| (row.stage, row.variable) == (series.stage, series.variable))
-            .map(|row| (row.size as f64, row.seconds))
-            .collect();
-        let ends = |values: &dyn Fn(&(f64, f64)) -> f64| {
-            let all = own.iter().map(values);
-            (all.clone().fold(f64::INFINITY, f64::min) / 1.5)..(all.fold(0.0, f64::max) * 1.5)
+        let own: Vec<&Row> =
+            rows.iter().filter(|row| (row.stage, row.variable) == (series.stage, series.variable)).collect();
+        let points = |value: &dyn Fn(&Row) -> f64| -> Vec<(f64, f64)> {
+            own.iter().map(|row| (row.size as f64, value(row))).filter(|at| at.1 > 0.0).collect()
         };
+        let (times, memories) = (points(&|row| row.seconds), points(&|row| row.memory_mib));
+        let ends = |values: &[(f64, f64)], value: &dyn Fn(&(f64, f64)) -> f64| {
+            let low = values.iter().map(value).fold(f64::INFINITY, f64::min);
+            let high = values.iter().map(value).fold(0.0, f64::max);
+            if high > 0.0 { (low / 1.5)..(high * 1.5) } else { 0.1..10.0 }
+        };
+        let sizes = ends(&times, &|at| at.0);
         let mut chart = ChartBuilder::on(panel)
             .caption(format!("{} against {}", series.stage, series.variable), ("sans-serif", 15))
             .margin(6)
             .x_label_area_size(24)
-            .y_label_area_size(48)
-            .build_cartesian_2d(ends(&|at| at.0).log_scale(), ends(&|at| at.1).log_scale())?;
+            .y_label_area_size(44)
+            .right_y_label_area_size(44)
+            .build_cartesian_2d(sizes.clone().log_scale(), ends(&times, &|at| at.1).log_scale())?
+            .set_secondary_coord(sizes.log_scale(), ends(&memories, &|at| at.1).log_scale());
         chart
             .configure_mesh()
             .disable_mesh()
             .x_labels(4)
             .y_labels(4)
-            .y_desc("s")
             .y_label_formatter(&|seconds| format!("{seconds:.0e}"))
             .label_style(("sans-serif", 12))
             .draw()?;
-        if let (Some(expected), Some(&(x, y))) = (series.expected, own.last()) {
+        chart
+            .configure_secondary_axes()
+            .y_labels(4)
+            .y_label_formatter(&|mib| format!("{mib:.0e}"))
+            .label_style(("sans-serif", 12))
+            .draw()?;
+        if let (Some(expected), Some(&(x, y))) = (series.time, times.last()) {
             // The expected power through the largest size.
-            let power = own.iter().map(|at| (at.0, y * (at.0 / x).powf(expected)));
-            chart.draw_series(LineSeries::new(power, RGBColor(150, 150, 150)))?;
+            let line = times.iter().map(|at| (at.0, y * (at.0 / x).powf(expected)));
+            chart.draw_series(LineSeries::new(line, power))?;
         }
-        chart.draw_series(own.iter().map(|&at| Circle::new(at, 4, colour.filled())))?;
+        chart.draw_series(times.iter().map(|&at| Circle::new(at, 4, time.filled())))?;
+        chart.draw_secondary_series(memories.iter().map(|&at| Circle::new(at, 4, memory)))?;
     }
     area.present()?;
     Ok(())
