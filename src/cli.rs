@@ -23,6 +23,7 @@ use bodyschema::settings::{EdgeWeight, Keep, Scheme, Settings};
 use bodyschema::simulate::simulate;
 use bodyschema::statistics;
 use bodyschema::streams::stream;
+use bodyschema::verify::{self, Finding, Outcome};
 use clap::{Args, Parser, Subcommand};
 use serde::Serialize;
 
@@ -157,6 +158,20 @@ enum Command {
         #[arg(value_name = "DIR")]
         folder: PathBuf,
     },
+    /// Compares results with the hashes that their manifest states, or with other results; exit status 0 if all
+    /// agree, 1 if some do not, 2 on trouble.
+    ///
+    /// With --against, every .csv and .npy file of REFERENCE is compared with that of DIR: the same bytes; or all
+    /// numbers within 1e-6 of the larger one or of 1; or, for samples.csv with scores, other draws whose rates
+    /// (eligible, trees right) are within 4 standard errors in each condition. Lists what is not the same.
+    Verify {
+        /// Folder of results.
+        #[arg(value_name = "DIR")]
+        folder: PathBuf,
+        /// Folder of results to compare with.
+        #[arg(long, value_name = "REFERENCE")]
+        against: Option<PathBuf>,
+    },
 }
 
 #[derive(Args)]
@@ -233,6 +248,7 @@ impl Arguments {
                 run_infer(&body_map, model, labels.zip(tree), &settings, &out)?;
             }
             Command::Plot { folder } => run_plot(&folder)?,
+            Command::Verify { folder, against } => return run_verify(&folder, against.as_deref()),
             Command::Reproduce { experiment, quick, simulations, common, jobs, out } => {
                 let mut settings = common.load(quick)?;
                 set(&mut settings.experiment.simulations, simulations);
@@ -269,6 +285,32 @@ fn say(line: impl Display) -> Result<()> {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(error).context("standard output"),
         _ => Ok(()),
     }
+}
+
+fn run_verify(folder: &Path, reference: Option<&Path>) -> Result<ExitCode> {
+    let mut agree = true;
+    let mut tell = |findings: Vec<Finding>, with: &str| -> Result<()> {
+        for finding in findings.iter().filter(|finding| finding.outcome != Outcome::Same) {
+            say(finding)?;
+        }
+        let count = |found: fn(&Outcome) -> bool| findings.iter().filter(|f| found(&f.outcome)).count();
+        let (same, agreeing) = (count(|outcome| *outcome == Outcome::Same), count(Outcome::agrees));
+        agree &= agreeing == findings.len();
+        say(format!(
+            "{}: {} compared with {with}: {same} the same, {} within tolerance, {} not",
+            folder.display(),
+            findings.len(),
+            agreeing - same,
+            findings.len() - agreeing
+        ))
+    };
+    if reference.is_none() || verify::has_manifest(folder) {
+        tell(verify::against_manifest(folder)?, "the hashes in manifest.json")?;
+    }
+    if let Some(reference) = reference {
+        tell(verify::against_reference(folder, reference)?, &reference.display().to_string())?;
+    }
+    Ok(if agree { ExitCode::SUCCESS } else { ExitCode::FAILURE })
 }
 
 fn run_simulate(settings: &Settings, out: &Path) -> Result<()> {

@@ -8,7 +8,7 @@
 //! in other ways, and the truth says how well ([`evaluate`]). [`pipeline`] composes these stages;
 //! [`reproduce`] runs an experiment of them and sums it up for its [`conditions`], from which [`figures`] and
 //! [`claims`] are made. [`plot`] draws the figures and [`report`] shows all of it. All [`settings`] stand in
-//! `reproduce/paper.toml`, and [`record`] reads and writes every file.
+//! `reproduce/paper.toml`, [`record`] reads and writes every file, and [`verify`] compares finished results.
 
 pub mod agent;
 pub mod baselines;
@@ -33,6 +33,7 @@ pub mod simulate;
 pub mod statistics;
 pub mod streams;
 mod vectorised;
+pub mod verify;
 
 #[cfg(test)]
 mod testing;

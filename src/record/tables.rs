@@ -102,6 +102,21 @@ pub fn read_rows<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>, FileError> 
     })
 }
 
+/// Reads all cells of a table, its header first.
+///
+/// # Errors
+/// If the file cannot be read, is empty, or has rows of different lengths.
+pub fn read_cells(path: &Path) -> Result<Vec<Vec<String>>, FileError> {
+    let mut reader = csv::ReaderBuilder::new()
+        .has_headers(false)
+        .from_path(path)
+        .map_err(|error| FileError::new(path, format!("cannot be read: {}", plain(&error))))?;
+    let cells = |record: csv::StringRecord| record.iter().map(str::to_owned).collect();
+    let rows: Result<Vec<Vec<String>>, _> = reader.records().map(|record| record.map(cells)).collect();
+    let rows = rows.map_err(|error| FileError::new(path, plain(&error)))?;
+    if rows.is_empty() { Err(FileError::new(path, "is empty")) } else { Ok(rows) }
+}
+
 /// The csv crate's message without the parts that repeat the place.
 fn plain(error: &csv::Error) -> String {
     match error.kind() {
