@@ -101,6 +101,9 @@ fn ended(child: &mut Child, within: Duration) -> Option<ExitStatus> {
 fn a_run_killed_at_any_moment_ends_with_the_same_files() {
     let place = Place::new();
     let mut rng = stream(1, 1, "kills", 0);
+    // `BODYSCHEMA_ROUNDS=40 cargo test --test resume -- --nocapture` kills for some minutes.
+    let rounds: usize = std::env::var("BODYSCHEMA_ROUNDS").map_or(2, |rounds| rounds.parse().unwrap());
+    let mut all_kills = 0;
     for experiment in ["exp1", "exp2"] {
         assert_eq!(place.finish(experiment, experiment), "");
         let expected = files(&place.out(experiment));
@@ -108,7 +111,7 @@ fn a_run_killed_at_any_moment_ends_with_the_same_files() {
             expected.keys().all(|name| !name.starts_with("checkpoints")),
             "they go when a run is finished"
         );
-        for round in 0..2 {
+        for round in 0..rounds {
             let out = format!("{experiment}-{round}");
             let mut kills = 0;
             loop {
@@ -126,8 +129,38 @@ fn a_run_killed_at_any_moment_ends_with_the_same_files() {
             }
             assert!(kills > 0, "at least one kill is well before the end");
             same(&place.out(&out), &expected, &format!("{experiment} after {kills} kills"));
+            all_kills += kills;
         }
     }
+    println!("{all_kills} kills in {} runs", 2 * rounds);
+}
+
+#[test]
+fn a_full_disk_is_an_error_and_the_run_goes_on_when_there_is_room() {
+    let place = Place::new();
+    place.finish("exp1", "whole");
+    // The shell's limit on the size of a file fails a write as a full disk does.
+    for kilobytes in [0, 1, 4, 20, 60] {
+        let program = env!("CARGO_BIN_EXE_bodyschema");
+        let limited = format!(
+            "trap '' XFSZ; ulimit -f {kilobytes}; exec {program} reproduce exp1 --settings small.toml --out full"
+        );
+        let output = Command::new("bash")
+            .args(["-c", &limited])
+            .current_dir(place.folder.path())
+            .stdout(Stdio::null())
+            .output()
+            .unwrap();
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{kilobytes} kB: {said}");
+        assert!(said.lines().last().unwrap().contains("cannot be written"), "{kilobytes} kB: {said}");
+        assert!(
+            files(&place.out("full")).keys().all(|name| name.extension().unwrap() != "partial"),
+            "{said}"
+        );
+    }
+    place.finish("exp1", "full");
+    same(&place.out("full"), &files(&place.out("whole")), "after a full disk");
 }
 
 /// Starts experiment 1 and leaves it once it has this part.
