@@ -68,6 +68,11 @@ pub enum MapError {
         /// Number of positive eigenvalues.
         positive: usize,
     },
+    /// Numbers so large or small that their products are none.
+    #[error(
+        "the largest distance is {0:e}, which is beyond what can be computed with; rescale the distances"
+    )]
+    Scale(f64),
     /// The eigen-decomposition failed.
     #[error("the eigen-decomposition of the {0} x {0} distances did not converge")]
     NoConvergence(usize),
@@ -78,9 +83,13 @@ impl ClassicalScaling {
     /// dimensions.
     ///
     /// # Errors
-    /// If the eigen-decomposition does not converge.
+    /// If the largest distance is far from 1, or the eigen-decomposition does not converge.
     pub fn new(distances: &Distances, dims: usize) -> Result<Self, MapError> {
         let n = distances.sensors;
+        let longest = distances.values.iter().copied().fold(0.0, f64::max);
+        if longest > 0.0 && !(1e-50..=1e50).contains(&longest) {
+            return Err(MapError::Scale(longest));
+        }
         let centred = inner_products(distances);
         let squared = |row: &[f64]| row.iter().map(|product| product.powi(2)).sum::<f64>();
         let squares = centred.chunks_exact(n).map(squared).sum();
@@ -246,6 +255,17 @@ mod tests {
                 assert!(scaling.coordinates(n).is_err());
             }
         }
+    }
+
+    #[test]
+    fn distances_whose_squares_are_no_numbers_are_refused() {
+        for scale in [1e-200, 1e200, f64::MAX] {
+            let values = vec![0.0, scale, scale, 0.0];
+            let refused = ClassicalScaling::new(&Distances { sensors: 2, values }, 1).unwrap_err();
+            assert_eq!(refused, MapError::Scale(scale));
+        }
+        let any = scaling(3, usize::MAX, |i, j| (i as f64 - j as f64).abs());
+        assert_eq!(any.eigenvalues.len(), 3);
     }
 
     #[test]

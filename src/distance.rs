@@ -24,6 +24,9 @@ impl Distances {
     }
 }
 
+/// Most sensors whose distances are computed: a matrix of 3.2 GB.
+pub const MOST_SENSORS: usize = 20_000;
+
 /// Most levels for which joint counts by bit planes, (N − 1)² passes over T bits, beat one pass over T
 /// symbols.
 const MOST_PLANES: usize = 10;

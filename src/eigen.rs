@@ -54,6 +54,7 @@ pub struct NoConvergence;
 pub fn largest(matrix: MatRef<'_, f64>, wanted: usize) -> Result<Eigen, NoConvergence> {
     // faer's results depend on its number of threads.
     faer::set_global_parallelism(Par::Seq);
+    let wanted = wanted.min(matrix.nrows());
     let block = wanted + SPARE;
     let few = 2 * BLOCKS * block <= matrix.nrows();
     match few.then(|| lanczos(matrix, wanted, block)).flatten() {
@@ -67,7 +68,6 @@ fn whole(matrix: MatRef<'_, f64>, wanted: usize) -> Result<Eigen, NoConvergence>
     let decomposition = matrix.self_adjoint_eigen(Side::Lower).map_err(|_| NoConvergence)?;
     let (ascending, vectors) = (decomposition.S().column_vector(), decomposition.U());
     let n = matrix.nrows();
-    let wanted = wanted.min(n);
     let values = (0..wanted).map(|k| ascending[n - 1 - k]).collect();
     Ok(Eigen { values, vectors: vectors.reverse_cols().subcols(0, wanted).to_owned() })
 }

@@ -43,7 +43,7 @@ impl Part {
         }
         let far = |sensor: &Vector| {
             let (along, off) = part.seen(sensor);
-            along.abs().max(off.norm()) > part.length()
+            along.abs().max(off.norm()) > 20.0 * part.length()
         };
         if part.sensors.is_empty() || part.sensors.iter().any(far) {
             return trouble(format!("part {number} has no sensor, or one that is not on it"));

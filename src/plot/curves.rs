@@ -1,5 +1,7 @@
 //! Points of curves → figures 8, 10 and 11: a mean or rate against d or p, with what it rests on.
 
+use std::collections::BTreeSet;
+
 use plotters::style::Color;
 
 use super::axes::{Axis, Panel, Rect, X_BARE, X_LABELS, percent, plain, sparse};
@@ -47,13 +49,14 @@ impl Kind {
         // An interval of few samples may reach beyond what is possible.
         check("interval end", rows.iter().flat_map(|row| [row.low, row.high]).flatten(), -1e9, 1e9)?;
         few(if self.by_coordination { "p" } else { "d" }, rows.iter().map(|row| self.x(row)))?;
-        for row in rows {
-            let twin = |other: &&CurveRow| key(other) == key(row) && self.x(other) == self.x(row);
-            if rows.iter().filter(twin).count() > 1 {
-                return trouble(format!("has two rows of {} at {}", row.method, plain(self.x(row))));
-            }
+        few("method", rows.iter().map(|row| row.method.as_str()))?;
+        few("clusters", rows.iter().map(|row| row.clusters))?;
+        let mut seen = BTreeSet::new();
+        // −0 is 0.
+        match rows.iter().find(|row| !seen.insert((key(row), (self.x(row) + 0.0).to_bits()))) {
+            Some(row) => trouble(format!("has two rows of {} at {}", row.method, plain(self.x(row)))),
+            None => Ok(()),
         }
-        Ok(())
     }
 
     fn axes(&self, rows: &[CurveRow]) -> (Axis<'static>, Axis<'static>) {

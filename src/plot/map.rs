@@ -3,7 +3,7 @@
 use super::axes::{Axis, Panel, Rect, X_LABELS, around};
 use super::canvas::{INK, Look, Shape, Trouble, WIDTH, paint};
 use super::legend::{Key, Legend};
-use super::{check, few, trouble};
+use super::{MANY, check, distinct, trouble};
 use crate::figures::{MapPoint, MapRow};
 
 /// Radius of a sensor's marker.
@@ -43,7 +43,7 @@ impl Groups {
         if let Some(row) = sensors().find(|row| row.group.is_none()) {
             return trouble(format!("sensor {} has no group", row.index));
         }
-        Ok(Self(few("group", sensors().filter_map(|row| row.group))?))
+        Ok(Self(distinct(sensors().filter_map(|row| row.group))))
     }
 
     /// How a point is drawn, and how large.
@@ -51,7 +51,7 @@ impl Groups {
         match row.kind {
             MapPoint::Joint => (joint(), JOINT),
             MapPoint::Sensor => {
-                let at = self.0.iter().position(|group| Some(*group) == row.group).unwrap_or(0);
+                let at = row.group.and_then(|group| self.0.binary_search(&group).ok()).unwrap_or(0);
                 (Look::of(at), SENSOR)
             }
         }
@@ -61,8 +61,11 @@ impl Groups {
     pub fn legend(&self, rows: &[MapRow], grouping: Grouping) -> Legend {
         let mut legend = Legend::default();
         let what = if grouping == Grouping::Parts { "part" } else { "cluster" };
-        for (at, group) in self.0.iter().enumerate() {
+        for (at, group) in self.0.iter().enumerate().take(MANY) {
             legend.add(Key::Marker(Look::of(at), 4.0), format!("{what} {group}"));
+        }
+        if let Some(more @ 1..) = self.0.len().checked_sub(MANY) {
+            legend.add(Key::Marker(Look::of(MANY), 4.0), format!("and {more} more"));
         }
         if rows.iter().any(|row| row.kind == MapPoint::Joint) {
             legend.add(Key::Marker(joint(), JOINT), "estimated joint");

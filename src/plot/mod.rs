@@ -20,7 +20,7 @@ use crate::record::{FileError, write_text};
 use canvas::{Trouble, trouble};
 
 /// Far above how many panels, parts or curves a picture can show.
-const MANY: usize = 60;
+pub const MANY: usize = 60;
 
 /// A table and the value that its picture marks, if any, to the picture.
 type Picture = fn(&Path, Option<&Mark>) -> Result<String, FileError>;

@@ -20,9 +20,19 @@ pub struct FileError {
 }
 
 impl FileError {
-    /// Says `message` of the file at `path`.
+    /// Says `message` of the file at `path`, on one line.
     pub fn new(path: &Path, message: impl ToString) -> Self {
-        Self { path: path.to_owned(), message: message.to_string() }
+        Self { path: path.to_owned(), message: one_line(&message.to_string()) }
+    }
+}
+
+/// A message on one line that a person reads to its end: it may quote what a file holds.
+pub fn one_line(message: &str) -> String {
+    const LONGEST: usize = 300;
+    let line = message.split_whitespace().collect::<Vec<_>>().join(" ");
+    match line.char_indices().nth(LONGEST) {
+        Some((end, _)) => format!("{} …", &line[..end]),
+        None => line,
     }
 }
 

@@ -1,14 +1,14 @@
 //! Matrices as NumPy's `.npy` files: tactile pressures, symbols, distances, body maps, assignments.
 
 use std::fs::File;
-use std::io::{self, BufReader};
+use std::io::{self, BufRead, BufReader};
 use std::path::Path;
 
 use npyz::{DType, Deserialize, NpyFile, Order, TypeChar, WriterBuilder};
 
 use super::{FileError, write_whole};
 use crate::body_map::BodyMap;
-use crate::distance::Distances;
+use crate::distance::{Distances, MOST_SENSORS};
 use crate::quantise::Symbols;
 use crate::schema::Sample;
 use crate::sense::Tactile;
@@ -62,9 +62,6 @@ pub fn read_tactile(path: &Path) -> Result<Tactile, FileError> {
     check_sensors(path, &matrix)?;
     Ok(Tactile { samples: matrix.rows, pressures: matrix.values })
 }
-
-/// Most sensors whose distances are computed: a matrix of 3.2 GB.
-const MOST_SENSORS: usize = 20_000;
 
 /// A matrix by sensors and times, in place of times and sensors, asks for distances beyond any memory.
 fn check_sensors<T>(path: &Path, matrix: &Matrix<T>) -> Result<(), FileError> {
@@ -149,14 +146,13 @@ impl<T: Copy> Matrix<T> {
     ) -> Result<Self, FileError> {
         let broken = |error: io::Error| match error.kind() {
             io::ErrorKind::NotFound => FileError::new(path, "no such file"),
-            _ => {
-                let reason = error.to_string().split_whitespace().collect::<Vec<_>>().join(" ");
-                FileError::new(path, format!("cannot be read as a .npy file: {reason}"))
-            }
+            _ => FileError::new(path, format!("cannot be read as a .npy file: {error}")),
         };
         let file = File::open(path).map_err(broken)?;
         let bytes = file.metadata().map_err(broken)?.len();
-        let npy = NpyFile::new(BufReader::with_capacity(1 << 20, file)).map_err(broken)?;
+        let mut reader = BufReader::with_capacity(1 << 20, file);
+        check_header(reader.fill_buf().map_err(broken)?).map_err(|message| FileError::new(path, message))?;
+        let npy = NpyFile::new(reader).map_err(broken)?;
 
         let &[rows, columns] = npy.shape() else {
             let message = format!("must have two dimensions, but its shape is {:?}", npy.shape());
@@ -212,6 +208,38 @@ impl<T: Copy> Matrix<T> {
         };
         Ok(Self { rows, columns, values })
     }
+}
+
+/// Whether the header is one that NumPy would write, given the start of a file.
+///
+/// `npyz` reads any Python literal: it takes twice as long for each further list in a list, and multiplies the
+/// lengths of any shape. NumPy's own header of a matrix has about a hundred characters, two pairs of brackets, and the
+/// digits of two lengths and of a type.
+fn check_header(start: &[u8]) -> Result<(), &'static str> {
+    const LONGEST: usize = 10_000;
+    const MOST_BRACKETS: usize = 6;
+    const MOST_DIGITS: usize = 18;
+    let (length, text) = match *start {
+        [b'\x93', b'N', b'U', b'M', b'P', b'Y', 1, _, a, b, ref text @ ..] => {
+            (usize::from(u16::from_le_bytes([a, b])), text)
+        }
+        [b'\x93', b'N', b'U', b'M', b'P', b'Y', _, _, a, b, c, d, ref text @ ..] => {
+            (u32::from_le_bytes([a, b, c, d]) as usize, text)
+        }
+        // The reader says what is wrong.
+        _ => return Ok(()),
+    };
+    if length > LONGEST {
+        return Err("has a header of more than 10000 characters, as NumPy never writes");
+    }
+    let text = &text[..length.min(text.len())];
+    let brackets = text.iter().filter(|character| b"([{".contains(character)).count();
+    let digits = text.iter().filter(|character| character.is_ascii_digit()).count();
+    let hexadecimal = text.windows(2).any(|pair| pair.eq_ignore_ascii_case(b"0x"));
+    if brackets > MOST_BRACKETS || digits > MOST_DIGITS || hexadecimal {
+        return Err("has a header that is not that of a matrix: too many brackets or digits");
+    }
+    Ok(())
 }
 
 fn collect<S: Deserialize, T>(
@@ -329,5 +357,99 @@ mod tests {
         says(read_body_map(&path).unwrap_err().to_string(), "is truncated");
         std::fs::write(&path, "sensor,part\n0,1\n").unwrap();
         says(read_body_map(&path).unwrap_err().to_string(), "cannot be read as a .npy file");
+    }
+
+    /// A file as NumPy writes it, of a header of our own and some bytes.
+    fn raw(version: u8, header: &str, data: &[u8]) -> Vec<u8> {
+        let length = header.len() as u32;
+        let prefix = match version {
+            1 => (length as u16).to_le_bytes().to_vec(),
+            _ => length.to_le_bytes().to_vec(),
+        };
+        [&b"\x93NUMPY"[..], &[version, 0], prefix.as_slice(), header.as_bytes(), data].concat()
+    }
+
+    fn header(dtype: &str, shape: &str) -> String {
+        format!("{{'descr': '{dtype}', 'fortran_order': False, 'shape': {shape}, }}\n")
+    }
+
+    #[test]
+    fn bytes_in_any_order_and_any_version_of_the_header_are_read() {
+        let folder = folder();
+        let path = folder.path().join("map.npy");
+        let expected = BodyMap { dims: 2, coordinates: vec![0.0, 258.0, -2.0, 3.0, 5.0, -300.0] };
+        for version in 1..=3 {
+            let big: Vec<u8> = expected.coordinates.iter().flat_map(|x| x.to_be_bytes()).collect();
+            std::fs::write(&path, raw(version, &header(">f8", "(3, 2)"), &big)).unwrap();
+            assert_eq!(read_body_map(&path).unwrap(), expected);
+            let whole: Vec<u8> =
+                expected.coordinates.iter().flat_map(|x| (*x as i16).to_be_bytes()).collect();
+            std::fs::write(&path, raw(version, &header(">i2", "(3, 2)"), &whole)).unwrap();
+            assert_eq!(read_body_map(&path).unwrap(), expected);
+        }
+        // Keys in another order, and no space.
+        let text = "{'shape':(1,2),'descr':'<f4','fortran_order':True}";
+        std::fs::write(&path, raw(1, text, &[0; 8])).unwrap();
+        assert_eq!(read_body_map(&path).unwrap(), BodyMap { dims: 2, coordinates: vec![0.0; 2] });
+    }
+
+    #[test]
+    fn one_sensor_and_one_sample_are_data() {
+        let folder = folder();
+        let path = folder.path().join("one.npy");
+        write(&path, [3, 1], Order::C, [0.0, 2.0, 1.0].into_iter()).unwrap();
+        assert_eq!(read_tactile(&path).unwrap(), Tactile { samples: 3, pressures: vec![0.0, 2.0, 1.0] });
+        write(&path, [1, 3], Order::C, [0.0, 2.0, 1.0].into_iter()).unwrap();
+        assert_eq!(read_tactile(&path).unwrap(), Tactile { samples: 1, pressures: vec![0.0, 2.0, 1.0] });
+        write(&path, [1, 1], Order::C, [0.0].into_iter()).unwrap();
+        assert_eq!(read_distances(&path).unwrap(), Distances { sensors: 1, values: vec![0.0] });
+    }
+
+    #[test]
+    fn no_header_takes_long_or_much_memory_to_refuse() {
+        let folder = folder();
+        let path = folder.path().join("bad.npy");
+        let largest = "18446744073709551615";
+        let nested = format!("{}{}", "[".repeat(60), "]".repeat(60));
+        for (bytes, expected) in [
+            (
+                raw(1, &header("<f8", &format!("({largest}, {largest})")), &[0; 64]),
+                "too many brackets or digits",
+            ),
+            (
+                raw(1, &header("<f8", "(0xffffffffffffffff, 0xffffffffffffffff)"), &[0; 64]),
+                "too many brackets or",
+            ),
+            (raw(1, &header("<f8", &nested), &[0; 64]), "too many brackets"),
+            (raw(2, &header("<f8", &"(".repeat(40)), &[0; 64]), "too many brackets"),
+            (raw(1, &header("<f8", "(999999999, 9999999)"), &[0; 64]), "is truncated: its header promises"),
+            (
+                raw(1, &header("<f8", &format!("(1, 1{})", " ".repeat(20_000))), &[0; 8]),
+                "more than 10000 characters",
+            ),
+            (b"\x93NUMPY\x02\x00\xff\xff\xff\xff{".to_vec(), "more than 10000 characters"),
+            (b"\x93NUMPY\x01\x00\x80\x00{".to_vec(), "cannot be read as a .npy file"),
+            (b"\x93NUMPY\x09\x00\x01\x00\x00\x00{".to_vec(), "cannot be read as a .npy file"),
+            (b"\x93NUMPY\x01".to_vec(), "cannot be read as a .npy file"),
+            (Vec::new(), "cannot be read as a .npy file"),
+            (raw(1, &header("<f8", "(-1, 2)"), &[0; 64]), "dimension cannot be negative"),
+            (raw(1, &header("<f8", "(4,)"), &[0; 64]), "must have two dimensions"),
+            (raw(1, &header("<f8", "()"), &[0; 64]), "must have two dimensions"),
+            (
+                raw(1, &header("<f2", "(2, 2)"), &[0; 8]),
+                "float32, float64 or integers, but its dtype is '<f2'",
+            ),
+            (raw(1, &header("|b1", "(2, 2)"), &[0; 8]), "but its dtype is '|b1'"),
+            (raw(1, &header("<c8", "(2, 2)"), &[0; 64]), "but its dtype is '<c8'"),
+            (raw(1, &header("<U3", "(2, 2)"), &[0; 64]), "but its dtype is '<U3'"),
+            (raw(1, &header("|O", "(2, 2)"), &[0; 64]), "but its dtype is '|O"),
+            (raw(1, &header("<f7", "(2, 2)"), &[0; 64]), "cannot be read as a .npy file"),
+        ] {
+            std::fs::write(&path, bytes).unwrap();
+            let begun = std::time::Instant::now();
+            let message = read_tactile(&path).unwrap_err().to_string();
+            assert!(message.contains(expected) && !message.contains('\n'), "{message:?} lacks {expected:?}");
+            assert!(begun.elapsed().as_secs() < 5, "{expected} took {:?}", begun.elapsed());
+        }
     }
 }

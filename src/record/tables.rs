@@ -1,6 +1,5 @@
 //! Tables as CSV: labels, trees, joint angles, samples.
 
-use std::collections::BTreeSet;
 use std::path::Path;
 
 use serde::de::DeserializeOwned;
@@ -66,26 +65,34 @@ pub fn read_truth(labels: &Path, tree: &Path, sensors: usize) -> Result<Truth, F
     Ok(truth)
 }
 
-/// Whether the edges connect all parts without a cycle: one fewer than parts, and all parts reached.
+/// Whether the edges connect all parts without a cycle: one fewer than parts, none between parts connected before.
 fn check_tree(truth: &Truth) -> Result<(), String> {
-    let parts: BTreeSet<usize> = truth.labels.iter().copied().collect();
-    if let Some(part) = truth.tree.iter().flat_map(|&(a, b)| [a, b]).find(|part| !parts.contains(part)) {
-        return Err(format!("part {part} has no sensor in the labels"));
+    let mut parts = truth.labels.clone();
+    parts.sort_unstable();
+    parts.dedup();
+    let index =
+        |part| parts.binary_search(&part).map_err(|_| format!("part {part} has no sensor in the labels"));
+    // Each part points towards the one that stands for all it is connected with.
+    let mut towards: Vec<usize> = (0..parts.len()).collect();
+    let mut cycle = false;
+    for &(child, parent) in &truth.tree {
+        let (child, parent) = (last(&mut towards, index(child)?), last(&mut towards, index(parent)?));
+        cycle |= child == parent;
+        towards[child] = parent;
     }
-    let mut reached: BTreeSet<usize> = parts.first().copied().into_iter().collect();
-    while let Some(next) =
-        truth.tree.iter().find_map(|&(a, b)| match (reached.contains(&a), reached.contains(&b)) {
-            (true, false) => Some(b),
-            (false, true) => Some(a),
-            _ => None,
-        })
-    {
-        reached.insert(next);
-    }
-    if truth.tree.len() + 1 != parts.len() || reached != parts {
+    if cycle || truth.tree.len() + 1 != parts.len() {
         return Err(format!("{} edges do not make a tree over {} parts", truth.tree.len(), parts.len()));
     }
     Ok(())
+}
+
+/// The part that stands for all that `part` is connected with. Ways are halved, so that each is short.
+fn last(towards: &mut [usize], mut part: usize) -> usize {
+    while towards[part] != part {
+        towards[part] = towards[towards[part]];
+        part = towards[part];
+    }
+    part
 }
 
 /// Reads rows by their header.
@@ -217,6 +224,12 @@ mod tests {
         write_truth(&labels, &tree, &truth).unwrap();
         assert_eq!(read_truth(&labels, &tree, 4).unwrap(), truth);
 
+        // A body of many parts, its edges from the leaves to the root.
+        let many = 20_000;
+        let long = Truth { labels: (0..many).collect(), tree: (1..many).rev().map(|i| (i, i - 1)).collect() };
+        write_truth(&labels, &tree, &long).unwrap();
+        assert_eq!(read_truth(&labels, &tree, many).unwrap(), long);
+
         let rejects = |label_rows: &str, tree_rows: &str, expected: &str| {
             std::fs::write(&labels, label_rows).unwrap();
             std::fs::write(&tree, tree_rows).unwrap();
@@ -232,5 +245,15 @@ mod tests {
         rejects(good_labels, "child,parent\n1,0\n", "1 edges do not make a tree over 3 parts");
         rejects(good_labels, "child,parent\n1,0\n0,1\n", "do not make a tree");
         rejects(good_labels, "child,parent\n1,0\n9,0\n", "part 9 has no sensor");
+        rejects(good_labels, "child,parent\n1,0\n0,1\n2,0\n", "3 edges do not make a tree over 3 parts");
+        rejects(good_labels, "child,parent\n1,0\n2,2\n", "do not make a tree");
+        rejects(good_labels, "", "0 edges do not make a tree");
+        rejects("", good_tree, "sensor 0 of 3 has no part");
+        rejects("sensor,part\n0,0\n1,-1\n", good_tree, "line 3: ");
+        rejects("sensor,part\n0,0\n1,99999999999999999999\n", good_tree, "line 3: ");
+        rejects("sensor,part\n0,0\n1\n", good_tree, "line: 3");
+        rejects("sensor,sensor,part\n0,0,0\n", good_tree, "duplicate field `sensor`");
+        rejects("sensor,part\n0,\"a\nb\"\n", good_tree, "line 2: ");
+        rejects("\u{feff}sensor,part\n0,0\n1,1\n2,x\n", good_tree, "line 4: ");
     }
 }
