@@ -1,6 +1,7 @@
 //! Stage 1. Settings → trajectory: the agent moves at random in Open Dynamics Engine (section 5.1).
 
 pub mod motor;
+#[allow(unsafe_code, reason = "the physics engine is a C library")]
 pub mod world;
 
 use indicatif::ProgressBar;

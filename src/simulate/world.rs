@@ -69,8 +69,7 @@ pub fn engine() -> (&'static str, String) {
 /// ODE wants one initialisation a process and one a thread.
 fn initialise() {
     static ONCE: Once = Once::new();
-    // SAFETY: `Once` runs the first calls alone; the last one is ODE's documented call for each thread,
-    // and may be repeated.
+    // SAFETY: `Once` runs these calls alone and before any other.
     ONCE.call_once(|| unsafe {
         assert_ne!(ode::dInitODE2(0), 0, "ODE cannot be initialised");
         ode::ode_shim_install_handlers();
@@ -80,6 +79,7 @@ fn initialise() {
             "the installed libode is not double precision"
         );
     });
+    // SAFETY: ODE is initialised; this is its documented call for each thread, and may be repeated.
     let allocated = unsafe { ode::dAllocateODEDataForThread(ode::dAllocateMaskAll as u32) };
     assert_ne!(allocated, 0, "ODE cannot allocate its data for this thread");
 }
@@ -244,9 +244,9 @@ impl World {
 
     /// Applies torques about both axes of a joint for the next step, N·m.
     pub fn apply_torques(&mut self, joint: usize, torques: [f64; 2]) {
+        debug_assert!(torques.iter().all(|torque| torque.is_finite()));
         // SAFETY: the joint is live and universal; ODE copes with any finite torque, and what a large one
         // does is seen after the step.
-        debug_assert!(torques.iter().all(|torque| torque.is_finite()));
         unsafe { ode::dJointAddUniversalTorques(self.joints[joint], torques[0], torques[1]) }
     }
 
