@@ -27,12 +27,12 @@ fn main() {
     let prior = NormalInverseWishart::fraley_raftery(&points, &settings).expect("the body spans its space");
     for model in Model::ALL {
         let mut rng = stream(1, 1, "bench", 0);
-        let mut chain = Chain::start(&points, &prior, &settings, model, &mut rng);
-        (0..BURN_IN).for_each(|_| chain.sweep(&mut rng));
+        let mut chain = Chain::start(&points, &prior, &settings, model, &mut rng).unwrap();
+        (0..BURN_IN).for_each(|_| chain.sweep(&mut rng).unwrap());
         let mut times: Vec<f64> = (0..MEASUREMENTS)
             .map(|_| {
                 let start = Instant::now();
-                (0..SWEEPS).for_each(|_| chain.sweep(&mut rng));
+                (0..SWEEPS).for_each(|_| chain.sweep(&mut rng).unwrap());
                 start.elapsed().as_secs_f64() * 1e3 / SWEEPS as f64
             })
             .collect();

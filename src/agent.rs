@@ -10,6 +10,9 @@ use crate::settings::{self, Morphology, Skin};
 /// A position or direction in space.
 pub type Vector3 = [f64; 3];
 
+/// Parts of every body.
+pub const PARTS: usize = 5;
+
 /// A cylinder, in the rest pose.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Part {
@@ -58,7 +61,7 @@ pub struct Agent {
 /// of the body, as an angle to the x axis.
 type Limb = (usize, bool, f64);
 
-fn limbs(morphology: Morphology) -> [Limb; 4] {
+fn limbs(morphology: Morphology) -> [Limb; PARTS - 1] {
     match morphology {
         Morphology::Chain => [(0, true, 0.0), (1, true, 0.0), (2, true, 0.0), (3, true, 0.0)],
         Morphology::Star => [

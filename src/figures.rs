@@ -253,25 +253,18 @@ impl<'a> Figures<'a> {
         self.write("fig04-agent", ends.chain(joints).chain(sensors))
     }
 
-    /// Figure 5: joint angles over time, of a trajectory for each p, thinned to a sample every `every`.
-    pub fn angles(
-        &mut self,
-        trajectories: &[(f64, Trajectory)],
-        interval: f64,
-        every: usize,
-    ) -> Result<(), FileError> {
+    /// Figure 5: joint angles over time, of a trajectory for each p with a sample every `interval`.
+    pub fn angles(&mut self, trajectories: &[(f64, Trajectory)], interval: f64) -> Result<(), FileError> {
         let rows = trajectories.iter().flat_map(|(coordination, trajectory)| {
-            trajectory.angles.chunks_exact(trajectory.joints).enumerate().step_by(every).flat_map(
-                move |(sample, angles)| {
-                    angles.iter().enumerate().map(move |(joint, angles)| AngleRow {
-                        coordination: *coordination,
-                        time_s: round(sample as f64 * interval),
-                        joint: joint + 1,
-                        angle1_rad: round(angles[0]),
-                        angle2_rad: round(angles[1]),
-                    })
-                },
-            )
+            trajectory.angles.chunks_exact(trajectory.joints).enumerate().flat_map(move |(sample, angles)| {
+                angles.iter().enumerate().map(move |(joint, angles)| AngleRow {
+                    coordination: *coordination,
+                    time_s: round(sample as f64 * interval),
+                    joint: joint + 1,
+                    angle1_rad: round(angles[0]),
+                    angle2_rad: round(angles[1]),
+                })
+            })
         });
         self.write("fig05-angles", rows)
     }

@@ -10,7 +10,7 @@ use crate::body_map::{BodyMap, ClassicalScaling, MapError};
 use crate::distance::{Distances, information_metric};
 use crate::evaluate::{Truth, adjusted_rand_index, parts, score};
 use crate::quantise::quantise;
-use crate::schema::gaussian::PriorError;
+use crate::schema::gaussian::MixtureError;
 use crate::schema::{Model, Sample, best, infer, one_part};
 use crate::sense::sense;
 use crate::settings::Settings;
@@ -103,7 +103,7 @@ pub enum StageError {
     /// Stage 5.
     Map(#[from] MapError),
     /// Stage 6.
-    Infer(#[from] PriorError),
+    Infer(#[from] MixtureError),
 }
 
 /// Stages 1 to 5, to a map of `dims` dimensions. `progress` advances by one for each sample.

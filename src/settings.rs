@@ -3,15 +3,26 @@
 //! `reproduce/paper.toml` is compiled in as the default, so that it is the only place where a default is
 //! written. A user's file is laid over it; a key that `paper.toml` does not have is an error.
 
+use std::fs::File;
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
 
+use crate::agent::PARTS;
+use crate::distance::MOST_SENSORS;
+use crate::plot::MANY;
+use crate::record::one_line;
+use crate::schema::{MOST_LABELS, fits};
+
 /// `reproduce/paper.toml` itself, whose comments say where each value is from.
 pub const PAPER: &str = include_str!("../reproduce/paper.toml");
 const QUICK: &str = include_str!("../reproduce/quick.toml");
+
+/// Longest settings file, in bytes: far above any, and far below what a device or a wrong file may have.
+const LONGEST_FILE: u64 = 1 << 20;
 
 /// All settings of a run. Field by field the twin of `reproduce/paper.toml`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -240,7 +251,7 @@ pub enum SettingsError {
         /// The file.
         path: PathBuf,
         /// Why.
-        reason: std::io::Error,
+        reason: io::Error,
     },
     /// The file is no TOML, or a value has the wrong type.
     #[error("{origin}: {message}")]
@@ -287,20 +298,21 @@ impl Settings {
             overlay(&mut table, parse(QUICK, "reproduce/quick.toml")?, "", "reproduce/quick.toml")?;
         }
         if let Some(path) = file {
-            let text = std::fs::read_to_string(path)
-                .map_err(|reason| SettingsError::Unreadable { path: path.to_owned(), reason })?;
+            let text =
+                read(path).map_err(|reason| SettingsError::Unreadable { path: path.to_owned(), reason })?;
             origin = path.display().to_string();
             overlay(&mut table, parse(&text, &origin)?, "", &origin)?;
         }
         let settings: Self = table.try_into().map_err(|error: toml::de::Error| SettingsError::Malformed {
-            message: error.to_string().trim().replace('\n', " "),
+            message: one_line(&error.to_string()),
             origin,
         })?;
         settings.validate()?;
         Ok(settings)
     }
 
-    /// Checks every range that needs no data.
+    /// Checks every range that needs no data, so that a run neither asks the physics engine for what it would abort on
+    /// nor takes more memory than a large computer has, or more time than a life.
     ///
     /// # Errors
     /// [`SettingsError::OutOfRange`] for the first value that cannot be used.
@@ -308,22 +320,36 @@ impl Settings {
         let positive = |key, value: f64| {
             check(key, value, value.is_finite() && value > 0.0, "a positive, finite number")
         };
-        // Far beyond any body, and far within what the physics engine computes without overflow.
+        // Far beyond any body, and far within what the physics engine computes without overflow and a picture shows.
+        let length = |key, value: f64| check(key, value, (1e-3..=1e3).contains(&value), "0.001 to 1000");
         let physical =
             |key, value: f64| check(key, value, (1e-6..=1e6).contains(&value), "0.000001 to 1000000");
         let gain = |key, value: f64| check(key, value, (0.0..=1e6).contains(&value), "0 to 1000000");
         let count = |key, value: usize| check(key, value, value >= 1, "at least 1");
 
-        physical("agent.part_length", self.agent.part_length)?;
-        physical("agent.part_radius", self.agent.part_radius)?;
-        gain("agent.gap", self.agent.gap)?;
+        length("agent.part_length", self.agent.part_length)?;
+        length("agent.part_radius", self.agent.part_radius)?;
+        let flattest = 10.0 * self.agent.part_length;
+        check(
+            "agent.part_radius",
+            self.agent.part_radius,
+            self.agent.part_radius <= flattest,
+            "at most ten times agent.part_length",
+        )?;
+        check("agent.gap", self.agent.gap, (0.0..=1e3).contains(&self.agent.gap), "0 to 1000")?;
         physical("agent.density", self.agent.density)?;
 
         count("skin.around", self.skin.around)?;
         count("skin.along", self.skin.along)?;
         check("skin.caps", self.skin.caps, self.skin.caps.is_multiple_of(2), "even: half on each cap")?;
-        let sensors = self.skin.around.saturating_mul(self.skin.along).saturating_add(self.skin.caps);
-        check("skin.around * skin.along + skin.caps", sensors, sensors <= 100_000, "at most 100000")?;
+        let each = self.skin.around.saturating_mul(self.skin.along).saturating_add(self.skin.caps);
+        check(
+            "skin.around * skin.along + skin.caps",
+            each,
+            each <= MOST_SENSORS / PARTS,
+            "at most 4000, which makes 20000 sensors in all",
+        )?;
+        let sensors = PARTS * each;
 
         let p = self.motion.coordination;
         check("motion.coordination", p, (0.0..=1.0).contains(&p), "a probability, 0 to 1")?;
@@ -338,13 +364,19 @@ impl Settings {
         let ratio = self.sense.interval / self.physics.step;
         let whole = ratio >= 0.5 && (ratio - ratio.round()).abs() < 1e-6 * ratio;
         check("sense.interval", self.sense.interval, whole, "a whole number of physics.step")?;
-        // Before anything is allocated: 2 billion pressures are 8 GB, 20 million samples 13 GB of poses.
-        let samples = self.physics.duration / self.sense.interval;
+        // Before anything is allocated: 2 billion pressures are 8 GB, 20 million samples 13 GB of poses. A billion
+        // steps take hours; of a longer time, figures show nothing.
+        let duration = self.physics.duration;
+        let (samples, steps) = (duration / self.sense.interval, duration / self.physics.step);
         check(
             "physics.duration",
-            self.physics.duration,
-            (1.0 - 1e-9..=2e7).contains(&samples) && samples * (5 * sensors) as f64 <= 2e9,
-            "at least sense.interval, with at most 20 million samples and 2 billion pressures in all",
+            duration,
+            (1.0 - 1e-9..=2e7).contains(&samples)
+                && samples * sensors as f64 <= 2e9
+                && steps <= 1e9
+                && duration <= 1e9,
+            "at least sense.interval and at most 1000000000, with at most 20 million samples, 2 billion pressures and \
+             1 billion steps of physics.step in all",
         )?;
 
         let levels = self.quantise.levels;
@@ -359,9 +391,18 @@ impl Settings {
         physical("schema.scale", schema.scale)?;
         count("schema.sweeps", schema.sweeps)?;
         check("schema.chains", schema.chains, (1..=1_000_000).contains(&schema.chains), "1 to 1000000")?;
+        let sweeps = schema.chains.saturating_mul(schema.sweeps);
+        check("schema.chains * schema.sweeps", sweeps, sweeps <= 1_000_000_000, "at most 1000000000")?;
         if schema.keep == Keep::All {
             check("schema.burn_in", schema.burn_in, schema.burn_in < schema.sweeps, "below schema.sweeps")?;
         }
+        let draws = schema.draws();
+        check(
+            "schema.chains * (schema.sweeps - schema.burn_in)",
+            draws,
+            draws <= 1_000_000 && draws * sensors <= MOST_LABELS,
+            "at most 1000000 draws where all are kept, and at most 1000000000 labels with all sensors",
+        )?;
 
         let ari = self.evaluate.eligible_ari;
         check("evaluate.eligible_ari", ari, (0.0..=1.0).contains(&ari), "0 to 1")?;
@@ -369,37 +410,46 @@ impl Settings {
         let dimensions = &self.experiment.dimensions;
         check(
             "experiment.dimensions",
-            format!("{dimensions:?}"),
-            !dimensions.is_empty()
-                && dimensions[0] >= 1
-                && dimensions.windows(2).all(|pair| pair[0] < pair[1]),
-            "a rising list of dimensions, each at least 1",
+            dimensions,
+            rising(dimensions) && dimensions[0] >= 1,
+            "a rising list of 1 to 60 dimensions, each at least 1",
         )?;
         let coordinations = &self.experiment.coordinations;
         check(
             "experiment.coordinations",
-            format!("{coordinations:?}"),
-            !coordinations.is_empty()
-                && coordinations.iter().all(|p| (0.0..=1.0).contains(p))
-                && coordinations.windows(2).all(|pair| pair[0] < pair[1]),
-            "a rising list of probabilities, 0 to 1",
+            coordinations,
+            rising(coordinations) && coordinations.iter().all(|p| (0.0..=1.0).contains(p)),
+            "a rising list of 1 to 60 probabilities, 0 to 1",
         )?;
         count("experiment.dimension", self.experiment.dimension)?;
+        for (key, d) in [
+            ("experiment.dimensions", dimensions.last()),
+            ("experiment.dimension", Some(&self.experiment.dimension)),
+        ] {
+            check(
+                key,
+                d.copied().unwrap_or(0),
+                d.is_none_or(|&d| fits(schema.components, d)),
+                "such that schema.components times its square is at most 10 million",
+            )?;
+        }
         let clusters = &self.baselines.clusters;
         check(
             "baselines.clusters",
-            format!("{clusters:?}"),
-            clusters.iter().all(|&clusters| (1..=5 * sensors).contains(&clusters)),
-            "a list of numbers from 1 to the number of sensors",
+            clusters,
+            rising(clusters) && clusters.iter().all(|clusters| (1..=sensors.min(1000)).contains(clusters)),
+            "a rising list of 1 to 60 numbers from 1 to the number of sensors, at most 1000",
         )?;
-        check(
-            "baselines.restarts",
-            self.baselines.restarts,
-            (1..=10_000).contains(&self.baselines.restarts),
-            "1 to 10000",
-        )?;
+        let restarts = self.baselines.restarts;
+        check("baselines.restarts", restarts, (1..=1000).contains(&restarts), "1 to 1000")?;
         let simulations = self.experiment.simulations;
-        check("experiment.simulations", simulations, (1..=10_000).contains(&simulations), "1 to 10000")
+        let conditions = (2 * dimensions.len()).max(coordinations.len());
+        check(
+            "experiment.simulations",
+            simulations,
+            (1..=10_000).contains(&simulations) && simulations * conditions * draws <= 10_000_000,
+            "1 to 10000, with at most 10 million draws (schema.chains, schema.keep) in all conditions",
+        )
     }
 
     /// Physics steps between two samples.
@@ -413,13 +463,42 @@ impl Settings {
     }
 }
 
+impl Schema {
+    /// Number of draws that are kept.
+    pub fn draws(&self) -> usize {
+        match self.keep {
+            Keep::Last => self.chains,
+            Keep::All => self.chains.saturating_mul(self.sweeps.saturating_sub(self.burn_in)),
+        }
+    }
+}
+
+/// Whether a list of conditions is in order, without a twin, and short enough for a figure.
+fn rising<T: PartialOrd>(values: &[T]) -> bool {
+    (1..=MANY).contains(&values.len()) && values.windows(2).all(|pair| pair[0] < pair[1])
+}
+
+/// The text of a settings file.
+fn read(path: &Path) -> io::Result<String> {
+    let mut text = String::new();
+    File::open(path)?.take(LONGEST_FILE + 1).read_to_string(&mut text)?;
+    if text.len() as u64 > LONGEST_FILE {
+        return Err(io::Error::other(format!("it is longer than {LONGEST_FILE} bytes")));
+    }
+    Ok(text)
+}
+
 fn check(
     key: &'static str,
-    value: impl ToString,
+    value: impl std::fmt::Debug,
     within: bool,
     range: &'static str,
 ) -> Result<(), SettingsError> {
-    if within { Ok(()) } else { Err(SettingsError::OutOfRange { key, value: value.to_string(), range }) }
+    if within {
+        Ok(())
+    } else {
+        Err(SettingsError::OutOfRange { key, value: one_line(&format!("{value:?}")), range })
+    }
 }
 
 fn paper_table() -> Table {
@@ -433,7 +512,7 @@ fn parse(text: &str, origin: &str) -> Result<Table, SettingsError> {
             .map_or(String::new(), |span| format!("line {}: ", 1 + text[..span.start].matches('\n').count()));
         SettingsError::Malformed {
             origin: origin.to_owned(),
-            message: format!("{line}{}", error.message().replace('\n', " ")),
+            message: one_line(&format!("{line}{}", error.message())),
         }
     })
 }

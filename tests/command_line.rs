@@ -248,6 +248,39 @@ fn a_mistake_is_one_line_that_says_what_and_where_and_status_2() {
     fs::write(at("heavy.toml"), "[agent]\ndensity = 1e300").unwrap();
     fs::write(at("long.toml"), "[physics]\nduration = 1e7").unwrap();
     fs::write(at("deep.toml"), "[experiment]\ndimensions = [2, 900]").unwrap();
+    fs::write(at("steps.toml"), "[physics]\nstep = 1e-6\n[sense]\ninterval = 1000.0").unwrap();
+    fs::write(at("vast.toml"), "[skin]\naround = 1000\nalong = 20").unwrap();
+    fs::write(at("endless.toml"), "[schema]\nsweeps = 1000000000000").unwrap();
+    fs::write(at("long-file.toml"), "#".repeat(2_000_000)).unwrap();
+    fs::write(at("binary.toml"), [0xff, 0xfe, 0x00]).unwrap();
+    npy::write_body_map(&at("broad.npy"), &BodyMap { dims: 200_000, coordinates: vec![1.0; 400_000] })
+        .unwrap();
+    let wave = |at: usize| (at as f64 * 12.9898).sin();
+    let deep = BodyMap { dims: 200, coordinates: (0..300 * 200).map(wave).collect() };
+    npy::write_body_map(&at("deep.npy"), &deep).unwrap();
+    let far = Distances { sensors: 2, values: vec![0.0, 1e200, 1e200, 0.0] };
+    npy::write_distances(&at("far.npy"), &far).unwrap();
+    for (folder, name, text) in [
+        ("no-figure", "README.md", ""),
+        ("bad-figure", "fig07-parts.csv", "dimension,counting\n2,\"all\ndraws\"\n"),
+        ("binary-figure", "fig07-parts.csv", "\0\0\0"),
+        ("bad-claims", "../claims.csv", "id,figure\na,b\n"),
+        ("bad-claims", "../manifest.json", "{}"),
+        ("bad-manifest", "../claims.csv", "id\n"),
+        ("bad-manifest", "../manifest.json", "{\"settings\": "),
+        ("deep-manifest", "../claims.csv", "id\n"),
+        ("deep-manifest", "../manifest.json", &"[".repeat(100_000)),
+    ] {
+        let figures = at(folder).join("figures");
+        fs::create_dir_all(&figures).unwrap();
+        fs::write(figures.join(name), text).unwrap();
+        if folder.ends_with("claims") || folder.ends_with("manifest") {
+            let row = "2,9,0,0,0.5,0.5,0.6,1,1\n";
+            let header =
+                "dimension,n,lowest,whisker_low,lower_quartile,median,upper_quartile,whisker_high,highest\n";
+            fs::write(figures.join("fig09-ari-box.csv"), format!("{header}{row}")).unwrap();
+        }
+    }
     fs::write(at("short.csv"), "sensor,part\n0,0\n").unwrap();
     fs::write(at("file"), "").unwrap();
 
@@ -278,8 +311,34 @@ fn a_mistake_is_one_line_that_says_what_and_where_and_status_2() {
         ("simulate --settings unknown.toml --out s", "unknown.toml: unknown setting `motion.speed`"),
         ("simulate --settings broken.toml --out s", "broken.toml: line 1"),
         ("simulate --settings wild.toml --out s", "lower motion.stiffness"),
-        ("simulate --settings heavy.toml --out s", "`agent.density` is 1000"),
+        ("simulate --settings heavy.toml --out s", "`agent.density` is 1e300"),
         ("simulate --settings long.toml --out s", "at most 20 million samples"),
+        (
+            "simulate --settings steps.toml --out s",
+            "`physics.duration` is 10000.0, but must be at least sense.interval",
+        ),
+        ("reproduce exp1 --settings vast.toml --out s", "`skin.around * skin.along + skin.caps` is 20000"),
+        ("simulate --settings endless.toml --out s", "`schema.chains * schema.sweeps`"),
+        ("simulate --settings long-file.toml --out s", "it is longer than 1048576 bytes"),
+        ("simulate --settings binary.toml --out s", "binary.toml: cannot read the settings"),
+        ("simulate --settings /dev/zero --out s", "/dev/zero: cannot read the settings"),
+        ("simulate --settings . --out s", ".: cannot read the settings"),
+        ("distance . --out d.npy", ".: cannot be read as a .npy file"),
+        ("map line.npy --dims 18446744073709551615 --out m.npy", "at most 1"),
+        ("map far.npy --dims 1 --out m.npy", "the largest distance is 1e200"),
+        ("infer broad.npy --out s", "the 2 points span fewer than 200000 dimensions"),
+        ("infer deep.npy --components 1000 --out s", "schema.components = 1000 in 200 dimensions"),
+        (
+            "infer clusters.npy --keep all --sweeps 100001 --burn-in 1 --chains 11 --out s",
+            "at most 1000000 draws",
+        ),
+        ("plot absent", "absent/figures: has none of the tables"),
+        ("plot no-figure", "has none of the tables"),
+        ("plot bad-figure", "fig07-parts.csv: line 2: "),
+        ("plot binary-figure", "fig07-parts.csv: has no rows"),
+        ("plot bad-claims", "claims.csv: line 2: missing field"),
+        ("plot bad-manifest", "bad-manifest/manifest.json: is no manifest"),
+        ("plot deep-manifest", "deep-manifest/manifest.json: is no manifest"),
         ("simulate --out file/s", "file/s: cannot be written to"),
         ("distance transposed.npy --out d.npy", "is it transposed?"),
         ("distance transposed.npy --symbols --out d.npy", "is it transposed?"),

@@ -177,6 +177,7 @@ fn body_and_movement(settings: &Settings, figures: &mut Figures) -> Result<(), R
     const EVERY: f64 = 0.2;
     let agent = Agent::new(&settings.agent, &settings.skin);
     let mut settings = settings.clone();
+    settings.sense.interval *= (EVERY / settings.sense.interval).round().max(1.0);
     settings.physics.duration = settings.physics.duration.min(SHOWN.max(settings.sense.interval));
     let mut trajectories = Vec::new();
     for coordination in settings.experiment.coordinations.clone() {
@@ -188,8 +189,7 @@ fn body_and_movement(settings: &Settings, figures: &mut Figures) -> Result<(), R
     }
     let rest = &trajectories[0].1.poses[..agent.parts.len()];
     figures.agent(&agent, rest, settings.agent.part_length)?;
-    let every = (EVERY / settings.sense.interval).round().max(1.0) as usize;
-    figures.angles(&trajectories, settings.sense.interval, every)?;
+    figures.angles(&trajectories, settings.sense.interval)?;
     Ok(())
 }
 

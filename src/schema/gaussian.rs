@@ -117,9 +117,37 @@ pub struct NormalInverseWishart {
     pub freedom: f64,
 }
 
-/// A prior that cannot be made.
+/// A mixture that cannot be computed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum PriorError {
+pub enum MixtureError {
+    /// Matrices beyond any memory.
+    #[error(
+        "schema.components = {components} in {dims} dimensions take matrices of more than 10 million numbers; use fewer \
+         of either"
+    )]
+    TooManyNumbers {
+        /// K.
+        components: usize,
+        /// d.
+        dims: usize,
+    },
+    /// Results beyond any memory.
+    #[error(
+        "{draws} draws of {points} points are more than 1 billion labels; keep fewer (schema.chains, schema.sweeps, \
+         schema.keep)"
+    )]
+    TooManyLabels {
+        /// Draws that are kept.
+        draws: usize,
+        /// n.
+        points: usize,
+    },
+    /// A matrix that is positive definite but for rounding.
+    #[error(
+        "a component is so flat that rounding leaves nothing of it; raise schema.scale, schema.extra_freedom or \
+         schema.mean_weight, or use fewer dimensions"
+    )]
+    Rounding,
     /// Numbers so large or small that their products are none.
     #[error("the points spread over {0:e}, which is beyond what can be computed with; rescale them")]
     Scale(f64),
@@ -172,8 +200,8 @@ impl NormalInverseWishart {
     /// Ψ₀ = covariance / K^(2/d); k₀, ν₀ − d, K and a factor on Ψ₀ are settings.
     ///
     /// # Errors
-    /// [`PriorError::Flat`] if the covariance is singular.
-    pub fn fraley_raftery(points: &Points, settings: &Schema) -> Result<Self, PriorError> {
+    /// [`MixtureError::Flat`] if the covariance is singular.
+    pub fn fraley_raftery(points: &Points, settings: &Schema) -> Result<Self, MixtureError> {
         let dims = points.dims;
         let shrink = settings.scale / (settings.components as f64).powf(2.0 / dims as f64);
         let covariance = points.covariance();
@@ -181,7 +209,7 @@ impl NormalInverseWishart {
         let spread = covariance.diagonal().max();
         let deviation = spread.sqrt();
         if spread > 0.0 && !(1e-50..=1e50).contains(&deviation) {
-            return Err(PriorError::Scale(deviation));
+            return Err(MixtureError::Scale(deviation));
         }
         let flat = !covariance
             .clone()
@@ -193,15 +221,20 @@ impl NormalInverseWishart {
             covariance * shrink,
             dims as f64 + settings.extra_freedom,
         );
-        prior.filter(|_| !flat).ok_or(PriorError::Flat { points: points.count, dims })
+        if flat {
+            return Err(MixtureError::Flat { points: points.count, dims });
+        }
+        prior.ok_or(MixtureError::Rounding)
     }
 
     /// The posterior given points with these statistics: again normal-inverse-Wishart (Murphy, 250–254).
-    pub fn posterior(&self, data: &Statistics) -> Self {
+    ///
+    /// # Errors
+    /// [`MixtureError::Rounding`] if its scale, which is positive definite, is not so in floating point.
+    pub fn posterior(&self, data: &Statistics) -> Result<Self, MixtureError> {
         let mut moments = self.moments.clone();
         moments.add(&data.moments);
-        Self::from_moments(moments, self.freedom + data.count())
-            .expect("a positive definite scale plus a scatter is positive definite")
+        Self::from_moments(moments, self.freedom + data.count()).ok_or(MixtureError::Rounding)
     }
 
     /// Draws (μ, Σ).
@@ -237,11 +270,14 @@ impl NormalInverseWishart {
     }
 
     /// Log marginal likelihood of points with these statistics, μ and Σ integrated out (Murphy, 266).
-    pub fn log_marginal(&self, data: &Statistics) -> f64 {
-        let posterior = self.posterior(data);
+    ///
+    /// # Errors
+    /// As for [`Self::posterior`].
+    pub fn log_marginal(&self, data: &Statistics) -> Result<f64, MixtureError> {
+        let posterior = self.posterior(data)?;
         let dims = self.scale.dims as f64;
-        self.log_mass() - posterior.log_mass() - 0.5 * data.count() * dims * PI.ln()
-            + 0.5 * dims * (self.mean_weight() / posterior.mean_weight()).ln()
+        let weights = 0.5 * dims * (self.mean_weight() / posterior.mean_weight()).ln();
+        Ok(self.log_mass() - posterior.log_mass() - 0.5 * data.count() * dims * PI.ln() + weights)
     }
 
     /// (ν / 2) log |Ψ| − log Γ_d(ν / 2) up to a constant that depends on d alone.

@@ -9,20 +9,23 @@ use rand::{Rng, RngExt};
 use rand_distr::StandardNormal;
 
 use super::bordered::Bordered;
-use super::gaussian::Gaussian;
+use super::gaussian::{Gaussian, MixtureError};
 
 /// Draws q from the normalised product N(q; μ_s, Σ_s) N(q; μ_c, Σ_c) (equation 18), a Gaussian with
 /// precision Λ_s + Λ_c, given the [information](Gaussian::information) of both.
 ///
 /// With Λ_s + Λ_c = Uᵀ U its mean is U⁻¹ U⁻ᵀ (Λ_s μ_s + Λ_c μ_c).
-pub fn draw_between(s: &Bordered, c: &Bordered, rng: &mut impl Rng) -> DVector<f64> {
+///
+/// # Errors
+/// [`MixtureError::Rounding`] if the sum is not positive definite in floating point.
+pub fn draw_between(s: &Bordered, c: &Bordered, rng: &mut impl Rng) -> Result<DVector<f64>, MixtureError> {
     let mut sum = s.clone();
     sum.add(c);
-    let factor = sum.factor().expect("a sum of precisions is positive definite");
+    let factor = sum.factor().ok_or(MixtureError::Rounding)?;
     let whitened = factor.border().map(|border| rng.sample::<f64, _>(StandardNormal) - border);
     let mut q = DVector::from_iterator(factor.dims, whitened);
     factor.solve_vector(q.as_mut_slice());
-    q
+    Ok(q)
 }
 
 /// −log (N(q; μ_s, Σ_s) N(q; μ_c, Σ_c)), the quadratic cost of equation 21.
@@ -31,13 +34,16 @@ pub fn cost(q: &DVector<f64>, s: &Gaussian, c: &Gaussian) -> f64 {
 }
 
 /// The same with the joint integrated out: −log N(μ_s; μ_c, Σ_s + Σ_c).
-pub fn collapsed_cost(s: &Gaussian, c: &Gaussian) -> f64 {
+///
+/// # Errors
+/// [`MixtureError::Rounding`] if the sum is not positive definite in floating point.
+pub fn collapsed_cost(s: &Gaussian, c: &Gaussian) -> Result<f64, MixtureError> {
     let covariance: DMatrix<f64> = s.covariance() + c.covariance();
-    let factor = covariance.cholesky().expect("a sum of covariances is positive definite");
+    let factor = covariance.cholesky().ok_or(MixtureError::Rounding)?;
     let offset = s.mean() - c.mean();
     let whitened = factor.l_dirty().solve_lower_triangular(&offset).expect("its diagonal is positive");
     let log_det = 2.0 * factor.l_dirty().diagonal().iter().map(|x| x.ln()).sum::<f64>();
-    0.5 * (whitened.norm_squared() + log_det + offset.len() as f64 * (2.0 * std::f64::consts::PI).ln())
+    Ok(0.5 * (whitened.norm_squared() + log_det + offset.len() as f64 * (2.0 * std::f64::consts::PI).ln()))
 }
 
 #[cfg(test)]
@@ -58,8 +64,9 @@ mod tests {
     fn a_joint_follows_the_product_of_both_densities_and_not_one_alone() {
         let (s, c) = (scalar_gaussian(1.0, 0.5), scalar_gaussian(-0.4, 1.2));
         let mut rng = stream(1, 1, "joint", 0);
-        let draws: Vec<f64> =
-            (0..4000).map(|_| draw_between(&s.information(), &c.information(), &mut rng)[0]).collect();
+        let draws: Vec<f64> = (0..4000)
+            .map(|_| draw_between(&s.information(), &c.information(), &mut rng).unwrap()[0])
+            .collect();
         let total = product_mass(&s, &c, 10.0);
         assert!(ks_one_sample(&draws, |q| product_mass(&s, &c, q) / total) > ALPHA);
         // The broken twin forgets the parent.
@@ -71,6 +78,6 @@ mod tests {
     fn the_collapsed_cost_is_the_integral_over_the_joint() {
         let (s, c) = (scalar_gaussian(1.0, 0.5), scalar_gaussian(-0.4, 1.2));
         let integral = product_mass(&s, &c, 10.0);
-        assert!((collapsed_cost(&s, &c) + integral.ln()).abs() < 1e-9);
+        assert!((collapsed_cost(&s, &c).unwrap() + integral.ln()).abs() < 1e-9);
     }
 }

@@ -13,13 +13,24 @@ use indicatif::ProgressBar;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use self::gaussian::{NormalInverseWishart, PriorError};
+use self::gaussian::{MixtureError, NormalInverseWishart};
 use self::points::Points;
 use self::sweep::Chain;
 use self::tree::Edge;
 use crate::body_map::BodyMap;
 use crate::settings::{Keep, Schema};
 use crate::streams::stream;
+
+/// Most numbers in the matrices of all components together, of which a chain holds a few: 80 MB each.
+const MOST_NUMBERS: usize = 10_000_000;
+
+/// Most labels in all draws that are kept, 8 GB.
+pub const MOST_LABELS: usize = 1_000_000_000;
+
+/// Whether the matrices of so many components in so many dimensions fit the memory.
+pub fn fits(components: usize, dims: usize) -> bool {
+    dims.saturating_mul(dims).saturating_mul(components) <= MOST_NUMBERS
+}
 
 /// The mixture to sample from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, ValueEnum)]
@@ -88,7 +99,7 @@ pub fn one_part(sensors: usize, settings: &Schema) -> Vec<Sample> {
 /// by one for each chain.
 ///
 /// # Errors
-/// [`PriorError`] if the map spans fewer dimensions than it has columns.
+/// [`MixtureError`] if the map spans fewer dimensions than it has columns, or is more than can be computed with.
 pub fn infer(
     map: &BodyMap,
     model: Model,
@@ -96,18 +107,29 @@ pub fn infer(
     seed: u64,
     simulation: usize,
     progress: &ProgressBar,
-) -> Result<Vec<Sample>, PriorError> {
+) -> Result<Vec<Sample>, MixtureError> {
+    let (components, dims, draws, count) = (settings.components, map.dims, settings.draws(), map.points());
+    // Before anything of that size is made; n points span n − 1 dimensions.
+    if count <= dims {
+        return Err(MixtureError::Flat { points: count, dims });
+    }
+    if !fits(components, dims) {
+        return Err(MixtureError::TooManyNumbers { components, dims });
+    }
+    if draws.saturating_mul(count) > MOST_LABELS {
+        return Err(MixtureError::TooManyLabels { draws, points: count });
+    }
     let points = Points::new(map);
     let prior = NormalInverseWishart::fraley_raftery(&points, settings)?;
     let stage = format!("{} {}", model.name(), map.dims);
-    let chains: Vec<Vec<Sample>> = (0..settings.chains)
+    let chains: Result<Vec<Vec<Sample>>, MixtureError> = (0..settings.chains)
         .into_par_iter()
         .map(|chain| {
             let mut rng = stream(seed, simulation, &stage, chain);
-            let mut state = Chain::start(&points, &prior, settings, model, &mut rng);
+            let mut state = Chain::start(&points, &prior, settings, model, &mut rng)?;
             let mut samples = Vec::new();
             for sweep in 1..=settings.sweeps {
-                state.sweep(&mut rng);
+                state.sweep(&mut rng)?;
                 let keep = match settings.keep {
                     Keep::Last => sweep == settings.sweeps,
                     Keep::All => sweep > settings.burn_in,
@@ -119,13 +141,13 @@ pub fn infer(
                         labels: state.labels.clone(),
                         tree: state.tree(),
                         joints: state.joints.iter().map(|joint| points.uncentred(&joint.position)).collect(),
-                        log_posterior: Some(state.log_posterior()),
+                        log_posterior: Some(state.log_posterior()?),
                     });
                 }
             }
             progress.inc(1);
-            samples
+            Ok(samples)
         })
         .collect();
-    Ok(chains.into_iter().flatten().collect())
+    Ok(chains?.into_iter().flatten().collect())
 }

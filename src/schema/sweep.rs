@@ -13,7 +13,7 @@ use rand_distr::Gamma;
 
 use super::Model;
 use super::bordered::Bordered;
-use super::gaussian::{Gaussian, NormalInverseWishart};
+use super::gaussian::{Gaussian, MixtureError, NormalInverseWishart};
 use super::joints;
 use super::labels;
 use super::points::{Points, Statistics};
@@ -49,13 +49,16 @@ pub struct Chain<'a> {
 
 impl<'a> Chain<'a> {
     /// Starts from labels uniform over the K components, and draws all else given them.
+    ///
+    /// # Errors
+    /// [`MixtureError::Rounding`]; so for all that follow.
     pub fn start(
         points: &'a Points,
         prior: &'a NormalInverseWishart,
         settings: &'a Schema,
         model: Model,
         rng: &mut impl Rng,
-    ) -> Self {
+    ) -> Result<Self, MixtureError> {
         let components = settings.components;
         let mut chain = Self {
             points,
@@ -69,23 +72,24 @@ impl<'a> Chain<'a> {
             statistics: Vec::new(),
         };
         chain.count();
-        chain.draw_given_labels(rng);
-        chain
+        chain.draw_given_labels(rng)?;
+        Ok(chain)
     }
 
     /// One sweep.
-    pub fn sweep(&mut self, rng: &mut impl Rng) {
+    pub fn sweep(&mut self, rng: &mut impl Rng) -> Result<(), MixtureError> {
         self.draw_labels(rng);
         self.count();
         self.drop_inactive_joints();
-        self.draw_given_labels(rng);
+        self.draw_given_labels(rng)
     }
 
-    fn draw_given_labels(&mut self, rng: &mut impl Rng) {
-        self.draw_gaussians(rng);
+    fn draw_given_labels(&mut self, rng: &mut impl Rng) -> Result<(), MixtureError> {
+        self.draw_gaussians(rng)?;
         self.draw_weights(rng);
-        if self.model == Model::DpgmmLj {
-            self.update_tree(rng);
+        match self.model {
+            Model::Dpgmm => Ok(()),
+            Model::DpgmmLj => self.update_tree(rng),
         }
     }
 
@@ -113,13 +117,15 @@ impl<'a> Chain<'a> {
     }
 
     /// (μ_k, Σ_k) given the component's points and joints (equations 16 and 17).
-    fn draw_gaussians(&mut self, rng: &mut impl Rng) {
+    fn draw_gaussians(&mut self, rng: &mut impl Rng) -> Result<(), MixtureError> {
         let mut data = self.statistics.clone();
         for Joint { edge, position } in &self.joints {
             data[edge.child].add(position.as_slice());
             data[edge.parent].add(position.as_slice());
         }
-        self.gaussians = data.iter().map(|data| self.prior.posterior(data).draw(rng)).collect();
+        let draw = |data: &Statistics| Ok(self.prior.posterior(data)?.draw(rng));
+        self.gaussians = data.iter().map(draw).collect::<Result<_, MixtureError>>()?;
+        Ok(())
     }
 
     /// π ~ Dir(γ/K + n_1, …, γ/K + n_K) (equation 19), as Gamma draws without their common divisor, which
@@ -134,7 +140,7 @@ impl<'a> Chain<'a> {
     }
 
     /// q, and the minimum spanning tree over the active components (equations 18 and 21).
-    fn update_tree(&mut self, rng: &mut impl Rng) {
+    fn update_tree(&mut self, rng: &mut impl Rng) -> Result<(), MixtureError> {
         let active = self.active();
         let components = &self.gaussians;
         let mut informations: Vec<Option<Bordered>> = vec![None; components.len()];
@@ -151,7 +157,7 @@ impl<'a> Chain<'a> {
                 for &s in &active {
                     let edge = self.joints.iter().map(|joint| joint.edge).find(|edge| edge.child == s);
                     own[s] = Some(match edge {
-                        Some(edge) => draw_joint(edge, rng),
+                        Some(edge) => draw_joint(edge, rng)?,
                         None => components[s].draw(rng),
                     });
                 }
@@ -166,7 +172,7 @@ impl<'a> Chain<'a> {
                 let mut drawn: Vec<Option<(f64, DVector<f64>)>> = vec![None; size * size];
                 for (at, &s) in active.iter().enumerate() {
                     for &c in &active[..at] {
-                        let q = draw_joint(Edge { child: s, parent: c }, rng);
+                        let q = draw_joint(Edge { child: s, parent: c }, rng)?;
                         drawn[c * size + s] = Some((joints::cost(&q, &components[s], &components[c]), q));
                     }
                 }
@@ -179,12 +185,22 @@ impl<'a> Chain<'a> {
                     .collect()
             }
             EdgeWeight::Collapsed => {
-                prim(&active, |s, c| joints::collapsed_cost(&components[s], &components[c]))
-                    .into_iter()
-                    .map(|edge| Joint { edge, position: draw_joint(edge, rng) })
-                    .collect()
+                let mut lost = None;
+                let cost = |s: usize, c: usize| {
+                    joints::collapsed_cost(&components[s], &components[c]).unwrap_or_else(|error| {
+                        lost = Some(error);
+                        f64::INFINITY
+                    })
+                };
+                let edges = prim(&active, cost);
+                if let Some(error) = lost {
+                    return Err(error);
+                }
+                let joint = |edge| Ok(Joint { edge, position: draw_joint(edge, rng)? });
+                edges.into_iter().map(joint).collect::<Result<_, MixtureError>>()?
             }
         };
+        Ok(())
     }
 
     /// The active components: those of more than one point (section 3.2).
@@ -208,17 +224,19 @@ impl<'a> Chain<'a> {
     ///
     /// It is the DPGMM's for both models: the joints are left out, since with them μ and Σ can no longer be
     /// integrated in closed form, and so that draws of both models compare.
-    pub fn log_posterior(&self) -> f64 {
+    ///
+    /// # Errors
+    /// [`MixtureError::Rounding`].
+    pub fn log_posterior(&self) -> Result<f64, MixtureError> {
         let concentration = self.settings.concentration;
         let share = concentration / self.settings.components as f64;
         let labels = libm::lgamma(concentration) - libm::lgamma(concentration + self.points.count as f64);
         let occupied = self.statistics.iter().filter(|data| data.count() > 0.0);
-        labels
-            + occupied
-                .map(|data| {
-                    libm::lgamma(share + data.count()) - libm::lgamma(share) + self.prior.log_marginal(data)
-                })
-                .sum::<f64>()
+        let component = |data: &Statistics| {
+            let count = libm::lgamma(share + data.count()) - libm::lgamma(share);
+            Ok(count + self.prior.log_marginal(data)?)
+        };
+        Ok(labels + occupied.map(component).sum::<Result<f64, MixtureError>>()?)
     }
 }
 

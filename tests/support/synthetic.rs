@@ -94,10 +94,11 @@ pub fn body(dims: usize, separation: f64, rng: &mut Stream) -> Body {
 
     let undirected = |a: usize, b: usize| (a.min(b), a.max(b));
     let nodes: Vec<usize> = (0..PARTS).collect();
-    let mut likeliest: Vec<_> = prim(&nodes, |s, c| collapsed_cost(&components[s], &components[c]))
-        .iter()
-        .map(|edge| undirected(edge.child, edge.parent))
-        .collect();
+    let cost = |s: usize, c: usize| {
+        collapsed_cost(&components[s], &components[c]).expect("components are far from flat")
+    };
+    let mut likeliest: Vec<_> =
+        prim(&nodes, cost).iter().map(|edge| undirected(edge.child, edge.parent)).collect();
     let mut drawn: Vec<_> = tree.iter().map(|&(child, parent)| undirected(child, parent)).collect();
     likeliest.sort_unstable();
     drawn.sort_unstable();
