@@ -383,6 +383,7 @@ fn draw(path: &Path, rows: &[Row]) -> Result<(), Box<dyn Error>> {
             .disable_mesh()
             .x_labels(4)
             .y_labels(4)
+            .x_label_formatter(&|size| size.to_string())
             .y_label_formatter(&|seconds| format!("{seconds:.0e}"))
             .label_style(("sans-serif", 12))
             .draw()?;
