@@ -7,9 +7,13 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
+use bodyschema::body_map::BodyMap;
 use bodyschema::pipeline::StageError;
-use bodyschema::settings::{PAPER, Settings, SettingsError};
+use bodyschema::schema::gaussian::MixtureError;
+use bodyschema::schema::{Model, infer};
+use bodyschema::settings::{EdgeWeight, PAPER, Settings, SettingsError};
 use bodyschema::streams::{Stream, stream};
+use indicatif::ProgressBar;
 use rand::RngExt;
 use rand::seq::IndexedRandom;
 use rayon::prelude::*;
@@ -205,6 +209,50 @@ fn a_value_outside_its_range_is_refused_by_its_name() {
         }
     }
     assert!(refused > 400, "{refused} were tried");
+}
+
+#[test]
+fn mixtures_of_extreme_priors_on_nearly_flat_maps_end_in_samples_or_in_an_error() {
+    let (mut drawn, mut lost) = (0, 0);
+    for case in 0..600 {
+        let rng = &mut stream(1, 1, "flat maps", case);
+        let mut schema = Settings::paper().schema;
+        (schema.chains, schema.sweeps, schema.components) = (1, 10, *[2, 10, 300].choose(rng).unwrap());
+        schema.edge_weight =
+            *[EdgeWeight::Literal, EdgeWeight::Pairwise, EdgeWeight::Collapsed].choose(rng).unwrap();
+        schema.concentration = between(1e-6, 1e6, rng);
+        schema.mean_weight = between(1e-6, 1e6, rng);
+        schema.extra_freedom = between(1e-2, 1e6, rng) - 1.0;
+        schema.scale = between(1e-6, 1e6, rng);
+        // Points that coincide in far clusters, whose coordinates nearly determine each other.
+        let (clusters, thin) = (rng.random_range(1..5), between(1e-7, 1.0, rng));
+        let spread = between(1e-9, 1.0, rng);
+        let point = |i: usize| {
+            let x = 100.0 * (i % clusters) as f64 + spread * rng.random::<f64>();
+            [x, x + thin * rng.random::<f64>(), 0.5 * x + thin * rng.random::<f64>()]
+        };
+        let map = BodyMap { dims: 3, coordinates: (0..60).flat_map(point).collect() };
+        for model in Model::ALL {
+            match infer(&map, model, &schema, 1, 1, &ProgressBar::hidden()) {
+                Ok(samples) => {
+                    assert!(
+                        samples.iter().all(|sample| sample.log_posterior.is_some_and(f64::is_finite)),
+                        "{case}"
+                    );
+                    drawn += 1;
+                }
+                Err(error) => {
+                    assert!(
+                        matches!(error, MixtureError::Flat { .. } | MixtureError::Rounding),
+                        "{case}: {error}"
+                    );
+                    lost += usize::from(error == MixtureError::Rounding);
+                }
+            }
+        }
+    }
+    println!("{drawn} drawn, {lost} lost in rounding");
+    assert!(drawn > 100 && lost > 10, "{drawn} drawn, {lost} lost in rounding");
 }
 
 /// What became of a case.
