@@ -98,14 +98,20 @@ fn last_message() -> String {
 /// The world and its bodies must be live, and there must be one for each part of the joint.
 unsafe fn make_joint(world: ode::dWorldID, bodies: &[ode::dBodyID], joint: &Joint) -> ode::dJointID {
     let [anchor, first, second] = [joint.anchor, joint.axes[0], joint.axes[1]];
+    let third = [1, 2, 0].map(|i| {
+        let j = (i + 1) % 3;
+        first[i] * second[j] - first[j] * second[i]
+    });
     // SAFETY: as the caller promises. Attach first: ODE ignores the anchor and axes of a joint without
-    // bodies.
+    // bodies. The third direction is for a moment only: whenever an axis is set, ODE relates it to the other, and
+    // reads what it never wrote if that is parallel, as the one it begins with is to the first.
     unsafe {
         let id = ode::dJointCreateUniversal(world, null_mut());
         ode::dJointAttach(id, bodies[joint.parent], bodies[joint.child]);
         ode::dJointSetUniversalAnchor(id, anchor[0], anchor[1], anchor[2]);
-        ode::dJointSetUniversalAxis1(id, first[0], first[1], first[2]);
+        ode::dJointSetUniversalAxis1(id, third[0], third[1], third[2]);
         ode::dJointSetUniversalAxis2(id, second[0], second[1], second[2]);
+        ode::dJointSetUniversalAxis1(id, first[0], first[1], first[2]);
         id
     }
 }
