@@ -1,0 +1,35 @@
+//! The number of sensors, the table of labels and that of the tree, between zero bytes; what is accepted must be a tree.
+
+#![no_main]
+
+use bodyschema::evaluate::{parts, score};
+use bodyschema::record::tables::read_truth;
+use bodyschema::schema::Sample;
+use bodyschema::schema::tree::Edge;
+use bodyschema_fuzz::{accepted, file};
+use libfuzzer_sys::fuzz_target;
+
+fuzz_target!(|data: &[u8]| {
+    let Some((&sensors, rest)) = data.split_first() else { return };
+    let sensors = usize::from(sensors % 16) + 1;
+    let mut tables = rest.splitn(2, |byte| *byte == 0);
+    let labels = file("labels.csv", tables.next().unwrap_or_default());
+    let tree = file("tree.csv", tables.next().unwrap_or_default());
+    let Some(truth) = accepted(read_truth(&labels, &tree, sensors)) else { return };
+
+    assert_eq!((truth.labels.len(), truth.tree.len() + 1), (sensors, truth.parts()));
+    let edge = |&(child, parent): &(usize, usize)| Edge { child, parent };
+    let sample = Sample {
+        chain: 0,
+        sweep: 1,
+        labels: truth.labels.clone(),
+        tree: truth.tree.iter().map(edge).collect(),
+        joints: Vec::new(),
+        log_posterior: None,
+    };
+    // No estimate has a part of one sensor, so that its edges match none.
+    if parts(&sample.labels) == truth.parts() {
+        let score = score(&sample, &truth, 1.0);
+        assert!(score.eligible && score.tree_correct, "the truth is right: {score:?}");
+    }
+});

@@ -1,0 +1,87 @@
+#!/usr/bin/env python3
+"""Makes fuzz/seeds/, small inputs that the fuzzer starts from; needs NumPy."""
+import io
+import pathlib
+
+import numpy as np
+
+SEEDS = pathlib.Path(__file__).parent / "seeds"
+
+
+def put(target, name, content):
+    path = SEEDS / target / name
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_bytes(content)
+
+
+def npy(array, version=None):
+    file = io.BytesIO()
+    np.lib.format.write_array(file, np.asanyarray(array), version)
+    return file.getvalue()
+
+
+rng = np.random.default_rng(1)
+pressures = rng.exponential(size=(12, 4)) * rng.integers(0, 2, (12, 4))
+points = rng.normal(size=(8, 2))
+distances = np.linalg.norm(points[:, None] - points, axis=2)
+for name, dtype in [("f4", "<f4"), ("f8-big", ">f8"), ("f2", "<f2"), ("i2-big", ">i2"), ("u1", "u1"), ("u8", "<u8"),
+                    ("i1", "i1"), ("bool", "?"), ("complex", "<c8"), ("text", "<U3")]:
+    put("npy", name, npy(pressures.astype(dtype)))
+put("npy", "fortran", npy(np.asfortranarray(pressures.astype("f4"))))
+put("npy", "distances", npy(distances))
+put("npy", "body-map", npy(points))
+put("npy", "one", npy([[0.5]]))
+put("npy", "empty", npy(np.zeros((0, 3))))
+put("npy", "vector", npy(points[0]))
+put("npy", "cube", npy(np.zeros((2, 2, 2))))
+put("npy", "record", npy(np.zeros(2, [("a", "<f4"), ("b", "<i2", 3)])))
+put("npy", "version-2", npy(points, (2, 0)))
+put("npy", "version-3", npy(points, (3, 0)))
+put("npy", "nan", npy([[0.0, np.nan], [np.inf, -1.0]]))
+put("npy", "truncated", npy(points)[:-7])
+header = b"{'descr': '<f8', 'fortran_order': False, 'shape': %s, }\n"
+for name, shape in [("promising", b"(99999999, 9)"), ("huge", b"(18446744073709551615, 2)"), ("nested", b"[" * 60)]:
+    text = header % shape
+    put("npy", name, b"\x93NUMPY\x01\x00" + len(text).to_bytes(2, "little") + text)
+put("npy", "long-header", b"\x93NUMPY\x02\x00\xff\xff\xff\xff{")
+
+LABELS, TREE = b"sensor,part\n0,0\n1,0\n2,1\n3,1\n", b"child,parent\n1,0\n"
+for name, tables in [("good", LABELS + b"\0" + TREE), ("cycle", LABELS + b"\0" + TREE + b"0,1\n"),
+                     ("twin", LABELS + b"3,0\n\0" + TREE), ("loop", LABELS + b"\0child,parent\n0,0\n"),
+                     ("none", b"sensor,part\n\0"), ("quoted", b'"sensor","part"\r\n"0","0"\r\n\0' + TREE)]:
+    put("tables", name, b"\x03" + tables)
+put("tables", "one", b"\0sensor,part\n0,7\n\0child,parent\n")
+
+for name, text in [
+    ("movement", "[motion]\ncoordination = 0\nstiffness = 1e6\nerror = \"shortest\"\n[skin]\naround = 3\ncaps = 2\n"),
+    ("times", "[physics]\nstep = 0.001\nduration = 60\n[sense]\ninterval = 0.05\nfluid_density = 1.2\n"),
+    ("body", "[agent]\nmorphology = \"y\"\npart_length = 1e-3\npart_radius = 0.01\ngap = 0\ndensity = 1e6\n"),
+    ("mixture", "schema = { components = 3, extra_freedom = -0.99, scale = 1e-6, edge_weight = \"collapsed\" }\n"),
+    ("draws", "[schema]\nkeep = \"all\"\nburn_in = 1\nsweeps = 3\n[quantise]\nscheme = \"pooled\"\nlevels = 256\n"),
+    ("lists", "[experiment]\ndimensions = [1, 3]\ncoordinations = [nan]\nseed = -1\n[baselines]\nclusters = [2, 2]\n"),
+]:
+    put("settings", name, text.encode())
+
+MAP = "kind,index,group,x1,x2{}\nsensor,0,0,0.1,0.2{}\nsensor,1,3,-0.4,0.2{}\njoint,0,,0,0.1{}\n"
+CURVE = ("method,clusters,counting,coordination,dimension,value,n,low,high,simulations,lowest,highest\n"
+         "{0},{1},all-draws,0.9,2,0.5,3,0.1,,2,0.4,0.6\n{0},{1},best-draw,0.95,5,,0,,,0,,\n")
+PARTS = "dimension,counting,parts,count,n,mean,low,high\n2,all-draws,5,3,3,5,4.5,\n2,best-draw,6,1,1,6,,\n"
+BOXES = ("dimension,n,lowest,whisker_low,lower_quartile,median,upper_quartile,whisker_high,highest\n"
+         "2,9,-0.1,0,0.2,0.4,0.6,1,1\n")
+AGENT = "part,kind,x_m,y_m,z_m\n0,proximal-end,0,0,0\n0,distal-end,0.5,0,0\n0,sensor,0.2,0.03,0\n0,joint,-0.1,0,0\n"
+ANGLES = "coordination,time_s,joint,angle1_rad,angle2_rad\n0.9,0,1,3.1,0\n0.9,0.2,1,-3.1,0.1\n1,0.4,2,0,0\n"
+CLAIMS = ("id,figure,place,statement,published,reproduced,n,low,high,simulations,lowest,highest,accepted,verdict,found\n"
+          "a,10b,section 5,said,84.6 %,0.9,9,0.8,1,2,,,0.7..0.9,reproduced,d = 14\n")
+MANIFEST = '{"experiment": "exp1", "headline": ["a"], "settings": {"skin": {"caps": 2}}, "outputs": [{"file": "a"}]}'
+DRAWS = "chain,parts,log_posterior,ari,eligible,tree_correct\n0,5,{0},1.0,true,{1}\n1,5,-3.5,1.0,true,true\n"
+LISTED = '{"settings": {}, "seed": 1, "experiment": "exp1", "outputs": [{"file": "../a", "sha256": "0"}]}'
+for name, files in [("close", (DRAWS.format(-2.5, "true"), DRAWS.format(-2.5000001, "true"), LISTED)),
+                    ("other", (DRAWS.format(-2.5, "true"), DRAWS.format(-9, "false"), MANIFEST)),
+                    ("columns", ("a,b\n1,2\n", "a,c\n1,2\n", "{}")), ("empty", ("", "a\n1\n", "[]"))]:
+    put("verify", name, "\0".join(files).encode())
+
+two, three = MAP.format("", "", "", ""), MAP.format(",x3", ",0.3", ",-0.3", ",0")
+tables = [AGENT, ANGLES, two, three, two, three, PARTS, CURVE.format("ward", 3), CURVE.format("dpgmm", ""), BOXES,
+          *[CURVE.format("dpgmm-lj", "")] * 4, CLAIMS + "\0" + MANIFEST]
+for number, table in enumerate(tables):
+    put("plot", f"{number:02}", bytes([number]) + table.encode())
