@@ -60,7 +60,10 @@ fn trespasses(calls: &[String], out: &Path) -> Vec<String> {
         "lstat",
     ];
     let trespass = |call: &&String| {
-        let Some((name, arguments)) = call.split_once('(') else { return false };
+        // "<... call resumed>" is the end of one whose arguments are on a line before, beside another thread's.
+        let Some((name, arguments)) = call.split_once('(').filter(|_| !call.starts_with('<')) else {
+            return false;
+        };
         let opens = name.starts_with("open");
         let changes =
             ["O_WRONLY", "O_RDWR", "O_CREAT", "O_TRUNC"].iter().any(|flag| arguments.contains(flag));
