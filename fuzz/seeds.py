@@ -77,7 +77,7 @@ DRAWS = "chain,parts,log_posterior,ari,eligible,tree_correct\n0,5,{0},1.0,true,{
 LISTED = '{"settings": {}, "seed": 1, "experiment": "exp1", "outputs": [{"file": "../a", "sha256": "0"}]}'
 for name, files in [("close", (DRAWS.format(-2.5, "true"), DRAWS.format(-2.5000001, "true"), LISTED)),
                     ("other", (DRAWS.format(-2.5, "true"), DRAWS.format(-9, "false"), MANIFEST)),
-                    ("columns", ("a,b\n1,2\n", "a,c\n1,2\n", "{}")), ("empty", ("", "a\n1\n", "[]"))]:
+                    ("columns", ("a,b\n1,2\n", "a,c\n1,2\n", "{}")), ("empty", ("", "a\n1\n", "[]")), ("lines", ('"a\nb",c\n1,2\n', "a,c\n1,2\n", "{}"))]:
     put("verify", name, "\0".join(files).encode())
 
 two, three = MAP.format("", "", "", ""), MAP.format(",x3", ",0.3", ",-0.3", ",0")

@@ -61,8 +61,9 @@ impl Display for Finding {
             Outcome::Differs(detail) => ("differs", detail.as_str()),
             Outcome::Missing => ("missing", ""),
         };
+        // It may quote cells, which may have lines.
         let colon = if detail.is_empty() { "" } else { ": " };
-        write!(formatter, "{word:<16}  {}{colon}{detail}", self.file)
+        write!(formatter, "{word:<16}  {}{colon}{}", self.file, detail.replace(['\n', '\r'], " "))
     }
 }
 

@@ -160,6 +160,8 @@ fn other_draws_are_compared_by_their_rates() {
     let (status, printed) = compare(draws(80, 60).replace("chain,parts", "chain,pieces"));
     assert_eq!(status, 1, "{printed}");
     assert!(printed.contains("columns chain,pieces"), "{printed}");
+    let (status, printed) = compare(draws(80, 60).replace("chain,parts", "\"ch\nain\",parts"));
+    assert!(status == 1 && printed.contains("columns ch ain,parts"), "{printed}");
     let (status, printed) = compare(String::new());
     assert!(status == 2 && printed.contains("samples.csv: is empty"), "{printed}");
 
