@@ -12,7 +12,7 @@ use crate::evaluate::{Truth, adjusted_rand_index, parts, score};
 use crate::quantise::quantise;
 use crate::schema::gaussian::MixtureError;
 use crate::schema::{Model, Sample, best, infer, one_part};
-use crate::sense::sense;
+use crate::sense::{Tactile, sense};
 use crate::settings::Settings;
 use crate::simulate::simulate;
 use crate::simulate::world::Unstable;
@@ -106,22 +106,33 @@ pub enum StageError {
     Infer(#[from] MixtureError),
 }
 
-/// Stages 1 to 5, to a map of `dims` dimensions. `progress` advances by one for each sample.
+/// What a body felt in one simulation, and what it is made of.
+#[derive(Debug, Clone)]
+pub struct FeltBody {
+    /// The pressures on its sensors.
+    pub tactile: Tactile,
+    /// The true parts and tree, which the inference must not see.
+    pub truth: Truth,
+}
+
+/// Stages 1 and 2. `progress` advances by one for each sample.
 ///
 /// # Errors
-/// If the simulation is unstable or the distances cannot be scaled.
-pub fn map_body(
-    settings: &Settings,
-    simulation: usize,
-    dims: usize,
-    progress: &ProgressBar,
-) -> Result<MappedBody, StageError> {
+/// If the simulation is unstable.
+pub fn feel(settings: &Settings, simulation: usize, progress: &ProgressBar) -> Result<FeltBody, StageError> {
     let agent = Agent::new(&settings.agent, &settings.skin);
     let mut rng = stream(settings.experiment.seed, simulation, "motion", 0);
     let trajectory = simulate(&agent, settings, &mut rng, progress)?;
     let tactile = sense(&agent, &trajectory, &settings.sense);
-    let symbols = quantise(&tactile, &settings.quantise);
-    drop(tactile);
+    Ok(FeltBody { tactile, truth: Truth { labels: agent.labels(), tree: agent.tree() } })
+}
+
+/// Stages 3 to 5, to a map of `dims` dimensions.
+///
+/// # Errors
+/// If the distances cannot be scaled.
+pub fn map_felt(felt: &FeltBody, settings: &Settings, dims: usize) -> Result<MappedBody, StageError> {
+    let symbols = quantise(&felt.tactile, &settings.quantise);
     let distances = information_metric(&symbols);
     let scaling = ClassicalScaling::new(&distances, dims)?;
     let facts = Facts {
@@ -130,8 +141,7 @@ pub fn map_body(
         eigenvalues: scaling.eigenvalues.clone(),
     };
     let map = if scaling.positive() == 0 { None } else { Some(scaling.coordinates(dims)?) };
-    let truth = Truth { labels: agent.labels(), tree: agent.tree() };
-    Ok(MappedBody { body: Body { truth, map }, distances, facts })
+    Ok(MappedBody { body: Body { truth: felt.truth.clone(), map }, distances, facts })
 }
 
 /// What the inference says of one body map.

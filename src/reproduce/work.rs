@@ -69,7 +69,8 @@ impl<'a> Work<'a> {
             None => {
                 let bar = progress(settings.samples() as u64 + 1, format!("{place}: body map"));
                 let dims = self.run.largest_dimension();
-                let mapped = pipeline::map_body(settings, simulation, dims, &bar)?;
+                let mapped =
+                    pipeline::map_felt(&pipeline::feel(settings, simulation, &bar)?, settings, dims)?;
                 bar.finish_and_clear();
                 let folder = self.run.out.join(place);
                 let mut names = vec!["labels.csv", "tree.csv"];

@@ -1,6 +1,6 @@
 //! Settings → the same settings with sizes that a test can afford, and every stage run with them.
 
-use bodyschema::pipeline::{StageError, cluster_and_score, infer_and_score, map_body};
+use bodyschema::pipeline::{StageError, cluster_and_score, feel, infer_and_score, map_felt};
 use bodyschema::schema::Model;
 use bodyschema::settings::Settings;
 use indicatif::ProgressBar;
@@ -40,7 +40,8 @@ pub fn bounded(settings: &Settings) -> Settings {
 /// If a stage fails.
 pub fn run_every_stage(settings: &Settings) -> Result<(), StageError> {
     let dimension = settings.experiment.dimensions[0];
-    let mapped = map_body(settings, 1, dimension, &ProgressBar::hidden())?;
+    let felt = feel(settings, 1, &ProgressBar::hidden())?;
+    let mapped = map_felt(&felt, settings, dimension)?;
     assert!(mapped.distances.values.iter().all(|distance| (0.0..=16.0).contains(distance)));
     for model in Model::ALL {
         let found = infer_and_score(&mapped.body, dimension, model, settings, 1, &ProgressBar::hidden())?;
