@@ -1,3 +1,3 @@
 #!/usr/bin/env bash
-# Experiment 1, over the dimensions of the body map (section 5). See experiment.sh.
-exec "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")/experiment.sh" exp1 "$@"
+# Experiment 1, over the dimensions of the body map (section 5). See run.sh.
+exec "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")/run.sh" exp1 reproduce exp1 "$@"

@@ -1,3 +1,3 @@
 #!/usr/bin/env bash
-# Experiment 2, over the ratios of motor coordination (section 6). See experiment.sh.
-exec "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")/experiment.sh" exp2 "$@"
+# Experiment 2, over the ratios of motor coordination (section 6). See run.sh.
+exec "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")/run.sh" exp2 reproduce exp2 "$@"

@@ -19,10 +19,11 @@ use bodyschema::report;
 use bodyschema::reproduce::{self, Experiment, Run};
 use bodyschema::schema::{self, Model, Sample, infer};
 use bodyschema::sense::sense;
-use bodyschema::settings::{EdgeWeight, Keep, Scheme, Settings};
+use bodyschema::settings::{self, EdgeWeight, Keep, Scheme, Settings};
 use bodyschema::simulate::simulate;
 use bodyschema::statistics;
 use bodyschema::streams::stream;
+use bodyschema::study::search::{self, Design};
 use bodyschema::verify::{self, Finding, Outcome};
 use clap::{Args, Parser, Subcommand};
 use serde::Serialize;
@@ -142,9 +143,23 @@ enum Command {
         simulations: Option<usize>,
         #[command(flatten)]
         common: Common,
-        /// Threads; results do not depend on it [default: one a core]
-        #[arg(long, value_name = "N")]
-        jobs: Option<usize>,
+        #[command(flatten)]
+        threads: Threads,
+        /// Folder for the files.
+        #[arg(long, value_name = "DIR")]
+        out: PathBuf,
+    },
+    /// Looks for settings under which the paper's claims hold together, by a score written down beforehand.
+    ///
+    /// Reads a design (reproduce/search.toml explains one) and writes into DIR: search.md (rounds, and which claims
+    /// hold together), scores.csv (a row a candidate and round), credits.csv (a row a claim of it), best.toml (the
+    /// settings of the best, for --settings) and checkpoints/, from which a search that was stopped goes on.
+    Search {
+        /// The design; that of reproduce/search.toml if not given.
+        #[arg(long, value_name = "FILE")]
+        design: Option<PathBuf>,
+        #[command(flatten)]
+        threads: Threads,
         /// Folder for the files.
         #[arg(long, value_name = "DIR")]
         out: PathBuf,
@@ -172,6 +187,23 @@ enum Command {
         #[arg(long, value_name = "REFERENCE")]
         against: Option<PathBuf>,
     },
+}
+
+#[derive(Args)]
+struct Threads {
+    /// Threads; results do not depend on it [default: one a core]
+    #[arg(long, value_name = "N")]
+    jobs: Option<usize>,
+}
+
+impl Threads {
+    fn apply(&self) -> Result<()> {
+        if let Some(jobs) = self.jobs {
+            ensure!((1..=1024).contains(&jobs), "--jobs is {jobs}, but must be 1 to 1024");
+            rayon::ThreadPoolBuilder::new().num_threads(jobs).build_global()?;
+        }
+        Ok(())
+    }
 }
 
 #[derive(Args)]
@@ -249,14 +281,15 @@ impl Arguments {
             }
             Command::Plot { folder } => run_plot(&folder)?,
             Command::Verify { folder, against } => return run_verify(&folder, against.as_deref()),
-            Command::Reproduce { experiment, quick, simulations, common, jobs, out } => {
+            Command::Search { design, threads, out } => {
+                threads.apply()?;
+                run_search(design.as_deref(), &out)?;
+            }
+            Command::Reproduce { experiment, quick, simulations, common, threads, out } => {
                 let mut settings = common.load(quick)?;
                 set(&mut settings.experiment.simulations, simulations);
                 settings.validate()?;
-                if let Some(jobs) = jobs {
-                    ensure!((1..=1024).contains(&jobs), "--jobs is {jobs}, but must be 1 to 1024");
-                    rayon::ThreadPoolBuilder::new().num_threads(jobs).build_global()?;
-                }
+                threads.apply()?;
                 let settings_file = common.file.settings.as_deref();
                 return run_reproduce(&Run {
                     experiment,
@@ -459,6 +492,22 @@ fn run_plot(folder: &Path) -> Result<()> {
         say(format!("report in {}", folder.join("report.html").display()))?;
     }
     Ok(())
+}
+
+/// The text of a design and where it is from: a file, or `default` with its name.
+fn design(file: Option<&Path>, default: (&str, &str)) -> Result<(String, String)> {
+    match file {
+        None => Ok((default.0.to_owned(), default.1.to_owned())),
+        Some(path) => Ok((settings::read(path)?, path.display().to_string())),
+    }
+}
+
+fn run_search(file: Option<&Path>, out: &Path) -> Result<()> {
+    let (text, origin) = design(file, (search::DESIGN, "reproduce/search.toml"))?;
+    let design = Design::parse(&text, &origin)?;
+    prepare_folder(out)?;
+    say(search::search(&design, out)?)?;
+    say(format!("All files are in {}.", out.display()))
 }
 
 fn run_reproduce(run: &Run) -> Result<ExitCode> {

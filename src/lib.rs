@@ -32,6 +32,7 @@ pub mod settings;
 pub mod simulate;
 pub mod statistics;
 pub mod streams;
+pub mod study;
 mod vectorised;
 pub mod verify;
 

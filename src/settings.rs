@@ -298,14 +298,32 @@ impl Settings {
             overlay(&mut table, parse(QUICK, "reproduce/quick.toml")?, "", "reproduce/quick.toml")?;
         }
         if let Some(path) = file {
-            let text =
-                read(path).map_err(|reason| SettingsError::Unreadable { path: path.to_owned(), reason })?;
+            let text = read(path)?;
             origin = path.display().to_string();
             overlay(&mut table, parse(&text, &origin)?, "", &origin)?;
         }
+        Self::checked(table, &origin)
+    }
+
+    /// `reproduce/paper.toml` with tables laid over it, one after the other; `origin` says where they are from.
+    ///
+    /// # Errors
+    /// If a key is unknown, or a value is out of range.
+    pub fn overlaid<'a>(
+        tables: impl IntoIterator<Item = &'a Table>,
+        origin: &str,
+    ) -> Result<Self, SettingsError> {
+        let mut table = paper_table();
+        for over in tables {
+            overlay(&mut table, over.clone(), "", origin)?;
+        }
+        Self::checked(table, origin)
+    }
+
+    fn checked(table: Table, origin: &str) -> Result<Self, SettingsError> {
         let settings: Self = table.try_into().map_err(|error: toml::de::Error| SettingsError::Malformed {
             message: one_line(&error.to_string()),
-            origin,
+            origin: origin.to_owned(),
         })?;
         settings.validate()?;
         Ok(settings)
@@ -478,14 +496,21 @@ fn rising<T: PartialOrd>(values: &[T]) -> bool {
     (1..=MANY).contains(&values.len()) && values.windows(2).all(|pair| pair[0] < pair[1])
 }
 
-/// The text of a settings file.
-fn read(path: &Path) -> io::Result<String> {
+/// The text of a file of settings or of a design.
+///
+/// # Errors
+/// If it cannot be read, or is too long to be one.
+pub fn read(path: &Path) -> Result<String, SettingsError> {
     let mut text = String::new();
-    File::open(path)?.take(LONGEST_FILE + 1).read_to_string(&mut text)?;
-    if text.len() as u64 > LONGEST_FILE {
-        return Err(io::Error::other(format!("it is longer than {LONGEST_FILE} bytes")));
+    let read = File::open(path).and_then(|file| file.take(LONGEST_FILE + 1).read_to_string(&mut text));
+    match read {
+        Ok(length) if length as u64 > LONGEST_FILE => {
+            Err(io::Error::other(format!("it is longer than {LONGEST_FILE} bytes")))
+        }
+        Ok(_) => Ok(text),
+        Err(error) => Err(error),
     }
-    Ok(text)
+    .map_err(|reason| SettingsError::Unreadable { path: path.to_owned(), reason })
 }
 
 fn check(

@@ -1,5 +1,6 @@
 //! Files that NumPy and a spreadsheet open: every stage's input and output.
 
+pub mod checkpoint;
 pub mod npy;
 pub mod tables;
 

@@ -1,6 +1,5 @@
 //! An experiment of the paper → a folder with its samples, figures, verdicts, manifest and report.
 
-mod checkpoint;
 mod manifest;
 mod work;
 

@@ -6,10 +6,10 @@ use indicatif::ProgressBar;
 use serde::{Deserialize, Serialize};
 use serde_json::json;
 
-use super::checkpoint::Checkpoints;
 use super::{ReproduceError, Run};
 use crate::pipeline::{self, BaselineRecord, Body, Facts, Inference, Record};
 use crate::progress::progress;
+use crate::record::checkpoint::Checkpoints;
 use crate::record::{npy, sha256, tables};
 use crate::schema::{Model, Sample};
 use crate::settings::Settings;

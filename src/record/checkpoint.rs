@@ -1,19 +1,19 @@
-//! Finished parts of an experiment → files that an interrupted run goes on from.
+//! Finished parts of an experiment or a study → files that an interrupted run goes on from.
 //!
 //! A part is taken up only if its file is whole (by its hash) and of the same program, settings and seed, so
 //! that nothing stale or half-written gets into a result.
 
-use std::cell::Cell;
 use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use serde_json::value::RawValue;
 use sha2::{Digest, Sha256};
 
-use crate::record::{FileError, hexadecimal, write_text};
+use super::{FileError, hexadecimal, write_text};
 
 /// The checkpoints of one run.
 #[derive(Debug)]
@@ -22,7 +22,7 @@ pub struct Checkpoints {
     /// What the results depend on.
     key: String,
     /// Whether the user was told that parts are taken up, and that others are of another run.
-    told: [Cell<bool>; 2],
+    told: [AtomicBool; 2],
 }
 
 #[derive(Serialize, Deserialize)]
@@ -56,7 +56,7 @@ impl Checkpoints {
             return self.damaged(&path, "does not have the hash that it states");
         }
         if file.key != self.key {
-            if !self.told[1].replace(true) {
+            if !self.told[1].swap(true, Ordering::Relaxed) {
                 eprintln!(
                     "bodyschema: {}: parts of a run with other settings or of another program are not used",
                     self.folder.display()
@@ -67,7 +67,7 @@ impl Checkpoints {
         let Ok(content) = serde_json::from_str(file.content.get()) else {
             return self.damaged(&path, "holds something else");
         };
-        if !self.told[0].replace(true) {
+        if !self.told[0].swap(true, Ordering::Relaxed) {
             eprintln!("bodyschema: {}: going on from what an earlier run finished", self.folder.display());
         }
         Some(content)
@@ -114,7 +114,8 @@ fn program() -> String {
     own.map_or(env!("BODYSCHEMA_REVISION").to_owned(), |bytes| hexadecimal(&Sha256::digest(bytes)))
 }
 
-fn hash(text: &str) -> String {
+/// SHA-256 of a text, in hexadecimal.
+pub fn hash(text: &str) -> String {
     hexadecimal(&Sha256::digest(text))
 }
 

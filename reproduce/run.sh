@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# An experiment from physics to the table of claims: installs what is missing, builds, runs. The first
-# argument names the experiment, all others go to `bodyschema reproduce` (see --help); results go to
-# results/NAME unless --out says otherwise. Status: 0 every claim reproduced, 1 some claim not, 2 trouble.
+# Installs what is missing, builds, and runs a subcommand of bodyschema. The first argument names the folder under
+# results/ that its files go to unless --out says otherwise; all others are the subcommand's (see --help). Status: 0
+# done (of an experiment: every claim reproduced), 1 some claim not, 2 trouble.
 set -euo pipefail
 root=$(CDPATH= cd -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")/.." && pwd)
 manifest=(--release --locked --manifest-path "$root/Cargo.toml")
@@ -15,4 +15,4 @@ out=(--out "$root/results/$name")
 for argument in "$@"; do
     case $argument in --out | --out=*) out=() ;; esac
 done
-exec cargo run --quiet "${manifest[@]}" -- reproduce "$name" "${out[@]}" "$@"
+exec cargo run --quiet "${manifest[@]}" -- "$@" "${out[@]}"
