@@ -23,7 +23,7 @@ use bodyschema::settings::{self, EdgeWeight, Keep, Scheme, Settings};
 use bodyschema::simulate::simulate;
 use bodyschema::statistics;
 use bodyschema::streams::stream;
-use bodyschema::study::search::{self, Design};
+use bodyschema::study::{search, sensitivity};
 use bodyschema::verify::{self, Finding, Outcome};
 use clap::{Args, Parser, Subcommand};
 use serde::Serialize;
@@ -164,10 +164,29 @@ enum Command {
         #[arg(long, value_name = "DIR")]
         out: PathBuf,
     },
+    /// Varies each setting that the paper leaves open around the default, and says how much each moves the results.
+    ///
+    /// Reads a design (reproduce/sensitivity.toml explains one) and writes into DIR: DEVIATIONS.md (a page for
+    /// people), figures/*.svg (a picture a setting), sensitivity.csv (a row a value, condition and measure),
+    /// design.toml, and checkpoints/, from which a study that was stopped goes on.
+    Sensitivity {
+        /// One part of the design alone, by its name.
+        #[arg(long, value_name = "NAME")]
+        only: Option<String>,
+        /// The design; that of reproduce/sensitivity.toml if not given.
+        #[arg(long, value_name = "FILE")]
+        design: Option<PathBuf>,
+        #[command(flatten)]
+        threads: Threads,
+        /// Folder for the files.
+        #[arg(long, value_name = "DIR")]
+        out: PathBuf,
+    },
     /// Draws the pictures of an experiment again, each from its table, and makes the report around them.
     ///
     /// Reads DIR/figures/*.csv and writes an .svg beside each; then, where DIR holds a finished experiment,
-    /// report.html from its claims.csv and manifest.json.
+    /// report.html from its claims.csv and manifest.json. Where DIR holds a sensitivity study: its pictures and
+    /// DEVIATIONS.md, from sensitivity.csv and design.toml.
     Plot {
         /// Folder of an experiment.
         #[arg(value_name = "DIR")]
@@ -284,6 +303,10 @@ impl Arguments {
             Command::Search { design, threads, out } => {
                 threads.apply()?;
                 run_search(design.as_deref(), &out)?;
+            }
+            Command::Sensitivity { only, design, threads, out } => {
+                threads.apply()?;
+                run_sensitivity(design.as_deref(), only.as_deref(), &out)?;
             }
             Command::Reproduce { experiment, quick, simulations, common, threads, out } => {
                 let mut settings = common.load(quick)?;
@@ -479,6 +502,10 @@ fn line(estimate: &statistics::Estimate, what: &str) -> String {
 }
 
 fn run_plot(folder: &Path) -> Result<()> {
+    if sensitivity::is_study(folder) {
+        let drawn = sensitivity::redraw(folder)?;
+        return say(format!("{} pictures and DEVIATIONS.md in {}", drawn.len(), folder.display()));
+    }
     let figures = folder.join("figures");
     let drawn = plot::draw(&figures)?;
     ensure!(
@@ -504,10 +531,21 @@ fn design(file: Option<&Path>, default: (&str, &str)) -> Result<(String, String)
 
 fn run_search(file: Option<&Path>, out: &Path) -> Result<()> {
     let (text, origin) = design(file, (search::DESIGN, "reproduce/search.toml"))?;
-    let design = Design::parse(&text, &origin)?;
+    let design = search::Design::parse(&text, &origin)?;
     prepare_folder(out)?;
     say(search::search(&design, out)?)?;
     say(format!("All files are in {}.", out.display()))
+}
+
+fn run_sensitivity(file: Option<&Path>, only: Option<&str>, out: &Path) -> Result<()> {
+    let (text, origin) = design(file, (sensitivity::DESIGN, "reproduce/sensitivity.toml"))?;
+    let mut design = sensitivity::Design::parse(&text, &origin)?;
+    if let Some(name) = only {
+        design = design.only(name, &origin)?;
+    }
+    prepare_folder(out)?;
+    sensitivity::study(&design, &text, out)?;
+    say(format!("All files are in {}; open DEVIATIONS.md there.", out.display()))
 }
 
 fn run_reproduce(run: &Run) -> Result<ExitCode> {

@@ -131,14 +131,33 @@ impl Conditions {
     /// Rate of ones among ones and zeros, by simulation.
     pub fn rate(&self, groups: &[Vec<f64>]) -> Estimate {
         let all = groups.concat();
-        self.clustered(rate(all.iter().filter(|&&outcome| outcome == 1.0).count(), all.len()), groups)
+        self.clustered(rate(ones(&all), all.len()), groups)
+    }
+
+    /// The difference of the means, or of the rates if `rates`, of `groups` of these conditions and `others` of
+    /// conditions of the same simulations: others minus groups.
+    pub fn difference(&self, groups: &[Vec<f64>], others: &[Vec<f64>], rates: bool) -> Estimate {
+        let pooled = |groups: &[Vec<f64>]| {
+            let all = groups.concat();
+            if rates { rate(ones(&all), all.len()) } else { mean(&all) }
+        };
+        let (first, second) = (totals(groups), totals(others));
+        self.resamples.difference((pooled(groups), &first), (pooled(others), &second))
     }
 
     fn clustered(&self, pooled: Estimate, groups: &[Vec<f64>]) -> Estimate {
-        let totals: Vec<(f64, usize)> =
-            groups.iter().map(|values| (values.iter().sum(), values.len())).collect();
-        self.resamples.clustered(pooled, &totals)
+        self.resamples.clustered(pooled, &totals(groups))
     }
+}
+
+/// Number of ones.
+fn ones(outcomes: &[f64]) -> usize {
+    outcomes.iter().filter(|&&outcome| outcome == 1.0).count()
+}
+
+/// Sum and number of the values of each simulation.
+fn totals(groups: &[Vec<f64>]) -> Vec<(f64, usize)> {
+    groups.iter().map(|values| (values.iter().sum(), values.len())).collect()
 }
 
 impl Record {

@@ -6,6 +6,7 @@ mod axes;
 mod bars;
 mod canvas;
 mod curves;
+pub(crate) mod effects;
 mod legend;
 mod map;
 mod space;

@@ -2,7 +2,9 @@
 //!
 //! A [`sensitivity`] study varies one open setting at a time around the default; a [`search`] looks for a default.
 
+mod deviations;
 pub mod search;
+pub mod sensitivity;
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -15,10 +17,35 @@ use serde::{Deserialize, Serialize};
 use crate::conditions::Conditions;
 use crate::pipeline::{FeltBody, Record, feel, infer_and_score, map_felt};
 use crate::progress::progress;
-use crate::record::FileError;
 use crate::record::checkpoint::{Checkpoints, hash};
+use crate::record::{FileError, one_line};
 use crate::schema::Model;
-use crate::settings::Settings;
+use crate::settings::{Settings, SettingsError};
+
+/// A design that cannot be used, or a study that could not be finished.
+#[derive(Debug, thiserror::Error)]
+pub enum StudyError {
+    /// The design does not say what it must.
+    #[error("{origin}: {message}")]
+    Design {
+        /// The file.
+        origin: String,
+        /// What is wrong, on one line.
+        message: String,
+    },
+    /// Settings that the design names.
+    #[error(transparent)]
+    Settings(#[from] SettingsError),
+    /// A file could not be read or written.
+    #[error(transparent)]
+    File(#[from] FileError),
+}
+
+impl StudyError {
+    fn design(origin: &str, message: &str) -> Self {
+        Self::Design { origin: origin.to_owned(), message: one_line(message) }
+    }
+}
 
 /// Settings to try, under a name.
 #[derive(Debug, Clone, PartialEq)]

@@ -12,9 +12,9 @@ use rand::RngExt;
 use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
 
-use super::{Configuration, Outcome, run};
+use super::{Configuration, Outcome, StudyError, run};
 use crate::claims::{self, Claim, Evidence, Judged, Verdict};
-use crate::record::{FileError, one_line, tables, write_text};
+use crate::record::{tables, write_text};
 use crate::reproduce::Experiment;
 use crate::schema::Model;
 use crate::settings::{Settings, SettingsError};
@@ -77,25 +77,6 @@ struct Factor {
     options: Vec<Table>,
 }
 
-/// A design that cannot be used, or a search that could not be finished.
-#[derive(Debug, thiserror::Error)]
-pub enum SearchError {
-    /// The design does not say what it must.
-    #[error("{origin}: {message}")]
-    Design {
-        /// The file.
-        origin: String,
-        /// What is wrong, on one line.
-        message: String,
-    },
-    /// A candidate's settings.
-    #[error(transparent)]
-    Settings(#[from] SettingsError),
-    /// A file could not be written.
-    #[error(transparent)]
-    File(#[from] FileError),
-}
-
 /// A candidate's fate in one round: a row of `scores.csv`.
 #[derive(Debug, Clone, Serialize)]
 struct ScoreRow {
@@ -145,9 +126,8 @@ impl Design {
     ///
     /// # Errors
     /// If it is no design, or names what is not there.
-    pub fn parse(text: &str, origin: &str) -> Result<Self, SearchError> {
-        let wrong =
-            |message: String| SearchError::Design { origin: origin.to_owned(), message: one_line(&message) };
+    pub fn parse(text: &str, origin: &str) -> Result<Self, StudyError> {
+        let wrong = |message: String| StudyError::design(origin, &message);
         let design: Self = toml::from_str(text).map_err(|error| wrong(error.to_string()))?;
         if design.round.is_empty() || design.score.is_empty() {
             return Err(wrong("needs a [[round]] and a [[score]] at least".to_owned()));
@@ -246,7 +226,7 @@ impl Term {
 ///
 /// # Errors
 /// If a candidate's settings cannot be used, or a file cannot be written.
-pub fn search(design: &Design, out: &Path) -> Result<String, SearchError> {
+pub fn search(design: &Design, out: &Path) -> Result<String, StudyError> {
     let mut field = design.all_candidates();
     let (mut scores, mut credits, mut rounds) = (Vec::new(), Vec::new(), Vec::new());
     for (at, round) in design.round.iter().enumerate() {
