@@ -2,7 +2,6 @@
 //!
 //! It is made from the folder alone (claims.csv, manifest.json, figures/), so that it can be made again.
 
-use std::fs;
 use std::path::Path;
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
@@ -10,7 +9,8 @@ use serde_json::Value;
 
 use crate::claims::table::{EXTENSION, Row};
 use crate::claims::{self, Figure};
-use crate::record::{FileError, tables, write_text};
+use crate::record::provenance::read_manifest;
+use crate::record::{FileError, read_text, tables, write_text};
 use crate::settings::PAPER;
 
 /// Writes `report.html` into the folder of an experiment.
@@ -24,19 +24,10 @@ pub fn write(folder: &Path) -> Result<(), FileError> {
     for figure in claims::figures() {
         let path = folder.join("figures").join(&figure.name).with_added_extension("svg");
         if path.exists() {
-            figures.push((figure, read(&path)?));
+            figures.push((figure, read_text(&path)?));
         }
     }
     write_text(&folder.join("report.html"), &page(&rows, &figures, &manifest).into_string())
-}
-
-fn read(path: &Path) -> Result<String, FileError> {
-    fs::read_to_string(path).map_err(|error| FileError::new(path, format!("cannot be read: {error}")))
-}
-
-fn read_manifest(path: &Path) -> Result<Value, FileError> {
-    serde_json::from_str(&read(path)?)
-        .map_err(|error| FileError::new(path, format!("is no manifest: {error}")))
 }
 
 fn page(rows: &[Row], figures: &[(Figure, String)], manifest: &Value) -> Markup {

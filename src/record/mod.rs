@@ -2,6 +2,7 @@
 
 pub mod checkpoint;
 pub mod npy;
+pub mod provenance;
 pub mod tables;
 
 use std::fs::{self, File};
@@ -86,6 +87,14 @@ pub fn prepare_folder(path: &Path) -> Result<(), FileError> {
 /// As for [`write_whole`].
 pub fn write_text(path: &Path, text: &str) -> Result<(), FileError> {
     write_whole(path, |file| file.write_all(text.as_bytes()))
+}
+
+/// The text of a file.
+///
+/// # Errors
+/// If it cannot be read, or is no text.
+pub fn read_text(path: &Path) -> Result<String, FileError> {
+    fs::read_to_string(path).map_err(|error| FileError::new(path, format!("cannot be read: {error}")))
 }
 
 /// SHA-256 of a file, in hexadecimal.

@@ -60,10 +60,11 @@ struct Table<'a> {
 }
 
 impl<'a> Table<'a> {
-    fn new(rows: &'a [Row]) -> Self {
+    /// The main condition is the p of every configuration, and the d of its experiment 2.
+    fn new(design: &Design, rows: &'a [Row]) -> Self {
         let headline = claims::published().into_iter().find(|claim| claim.id == HEADLINE);
         let accept = headline.and_then(|claim| claim.accept).expect("the headline has a range");
-        let settings = Settings::paper();
+        let settings = design.defaults().expect("a design has been checked");
         let (coordination, dimension) = (settings.motion.coordination, settings.experiment.dimension);
         Self { rows, coordination, dimension, accept }
     }
@@ -132,8 +133,8 @@ pub fn columns() -> [Column; 4] {
 }
 
 /// What the picture of a part shows: the default, then each value, at the main condition.
-pub fn lines(rows: &[Row], part: &str) -> Vec<Line> {
-    let table = Table::new(rows);
+pub fn lines(design: &Design, rows: &[Row], part: &str) -> Vec<Line> {
+    let table = Table::new(design, rows);
     let line = |label: &str, part: &str, value: &str| {
         let cell = |model, measure| {
             let row = table.main(part, value, model, measure)?;
@@ -155,8 +156,8 @@ pub fn lines(rows: &[Row], part: &str) -> Vec<Line> {
 }
 
 /// The page.
-pub fn page(design: &Design, rows: &[Row]) -> String {
-    let table = Table::new(rows);
+pub fn page(design: &Design, rows: &[Row], revision: &str) -> String {
+    let table = Table::new(design, rows);
     let paper = Settings::paper();
     let mut text = String::new();
     let mut line = |line: &str| writeln!(text, "{line}").expect("a text takes all");
@@ -176,11 +177,10 @@ pub fn page(design: &Design, rows: &[Row]) -> String {
         counts(&all)
     ));
     line(&format!(
-        "Made by `reproduce/sensitivity.sh` (revision {}): {}; all else as in \
+        "Made by `reproduce/sensitivity.sh` (revision {revision}): {}; all else as in \
          [reproduce/paper.toml](reproduce/paper.toml). Numbers are at p = {p} and d = {d} unless a column says \
          otherwise. Intervals are 95 % intervals over simulations (bootstrap); *change* is the difference from the \
          default, paired by simulation. A rate is over the eligible draws: five parts and an ARI of 1.\n",
-        env!("BODYSCHEMA_REVISION"),
         design.summary(),
     ));
     line(&format!(

@@ -18,6 +18,7 @@ use crate::conditions::Conditions;
 use crate::pipeline::{FeltBody, Record, feel, infer_and_score, map_felt};
 use crate::progress::progress;
 use crate::record::checkpoint::{Checkpoints, hash};
+use crate::record::provenance::{hashes, provenance, write_json};
 use crate::record::{FileError, one_line};
 use crate::schema::Model;
 use crate::settings::{Settings, SettingsError};
@@ -45,6 +46,15 @@ impl StudyError {
     fn design(origin: &str, message: &str) -> Self {
         Self::Design { origin: origin.to_owned(), message: one_line(message) }
     }
+}
+
+/// Writes manifest.json of a study: what made its tables, and their hashes.
+fn write_manifest(out: &Path, study: &str, seed: u64, tables: &[&str]) -> Result<(), FileError> {
+    let mut manifest = serde_json::json!({ "study": study, "seed": seed });
+    let fields = manifest.as_object_mut().expect("it is written as an object");
+    fields.extend(provenance());
+    fields.insert("outputs".to_owned(), hashes(out, tables.iter().copied())?.into());
+    write_json(&out.join("manifest.json"), &manifest)
 }
 
 /// Settings to try, under a name.

@@ -12,7 +12,7 @@ use rand::RngExt;
 use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
 
-use super::{Configuration, Outcome, StudyError, run};
+use super::{Configuration, Outcome, StudyError, run, write_manifest};
 use crate::claims::{self, Claim, Evidence, Judged, Verdict};
 use crate::record::{tables, write_text};
 use crate::reproduce::Experiment;
@@ -259,6 +259,7 @@ pub fn search(design: &Design, out: &Path) -> Result<String, StudyError> {
     let best = &rounds.last().expect("there is a round")[0].start;
     let overlay = toml::to_string(&best.settings).expect("a table can be written");
     write_text(&out.join("best.toml"), &format!("# Candidate {}.\n{overlay}", best.name))?;
+    write_manifest(out, "search", design.seed, &["scores.csv", "credits.csv", "search.md", "best.toml"])?;
     Ok(text)
 }
 

@@ -4,18 +4,18 @@
 //! simulations (the same random numbers), so that differences from the default are paired.
 
 use std::collections::HashSet;
-use std::fs;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 use toml::Table;
 
 use super::search::flat;
-use super::{Configuration, Outcome, StudyError, deviations, run};
+use super::{Configuration, Outcome, StudyError, deviations, run, write_manifest};
 use crate::conditions::{Condition, Conditions};
 use crate::pipeline::Record;
 use crate::plot;
-use crate::record::{FileError, tables, write_text};
+use crate::record::provenance::read_manifest;
+use crate::record::{FileError, one_line, read_text, tables, write_text};
 use crate::schema::Model;
 use crate::settings::Settings;
 use crate::statistics::Estimate;
@@ -145,6 +145,7 @@ impl Design {
     pub fn parse(text: &str, origin: &str) -> Result<Self, StudyError> {
         let design: Self =
             toml::from_str(text).map_err(|error| StudyError::design(origin, &error.to_string()))?;
+        let paper = design.defaults()?;
         let mut names = HashSet::from([DEFAULT]);
         for part in &design.part {
             let plain = |name: &str| {
@@ -160,7 +161,6 @@ impl Design {
             if !part.values.iter().all(|value| values.insert(label(value))) {
                 return Err(StudyError::design(origin, &format!("part `{}` has a value twice", part.name)));
             }
-            let paper = Settings::paper();
             if let Some(key) = part.settings.iter().find(|key| default_value(&paper, key).is_none()) {
                 let message = format!("part `{}` names `{key}`, which is no setting", part.name);
                 return Err(StudyError::design(origin, &message));
@@ -192,6 +192,14 @@ impl Design {
         Ok(Configuration { name, settings })
     }
 
+    /// The settings of the default as the study runs it.
+    ///
+    /// # Errors
+    /// If the design's settings cannot be used.
+    pub fn defaults(&self) -> Result<Settings, StudyError> {
+        Ok(self.configure(DEFAULT.to_owned(), &Table::new())?.settings)
+    }
+
     /// How each configuration is run, in words.
     pub fn summary(&self) -> String {
         format!("{}, seed {}", flat(&self.settings).join(", "), self.seed)
@@ -216,7 +224,7 @@ pub fn default_value(settings: &Settings, key: &str) -> Option<String> {
 /// # Errors
 /// If a value's settings cannot be used, or a file cannot be written.
 pub fn study(design: &Design, text: &str, out: &Path) -> Result<(), StudyError> {
-    let mut configurations = vec![design.configure(DEFAULT.to_owned(), &Table::new())?];
+    let mut configurations = vec![Configuration { name: DEFAULT.to_owned(), settings: design.defaults()? }];
     for part in &design.part {
         for value in &part.values {
             configurations.push(design.configure(format!("{}: {}", part.name, label(value)), value)?);
@@ -233,6 +241,7 @@ pub fn study(design: &Design, text: &str, out: &Path) -> Result<(), StudyError> 
     }
     tables::write_rows(&out.join(TABLE), &rows)?;
     write_text(&out.join(COPY), text)?;
+    write_manifest(out, "sensitivity", design.seed, &[TABLE, COPY])?;
     redraw(out)?;
     Ok(())
 }
@@ -248,23 +257,29 @@ pub fn is_study(folder: &Path) -> bool {
 /// If they are not what a study wrote, or a file cannot be written.
 pub fn redraw(folder: &Path) -> Result<Vec<String>, StudyError> {
     let path = folder.join(COPY);
-    let text = fs::read_to_string(&path)
-        .map_err(|error| FileError::new(&path, format!("cannot be read: {error}")))?;
+    let text = read_text(&path)?;
     let mut design = Design::parse(&text, &path.display().to_string())?;
     let rows: Vec<Row> = tables::read_rows(&folder.join(TABLE))?;
     // A study of some parts alone.
     design.part.retain(|part| rows.iter().any(|row| row.part == part.name));
-    let page = deviations::page(&design, &rows);
+    let page = deviations::page(&design, &rows, &revision(folder)?);
     write_text(&folder.join("DEVIATIONS.md"), &page)?;
     let mut written = Vec::new();
     for part in &design.part {
         let name = format!("figures/{}.svg", part.name);
-        let picture = plot::effects::draw(&deviations::columns(), &deviations::lines(&rows, &part.name));
+        let picture =
+            plot::effects::draw(&deviations::columns(), &deviations::lines(&design, &rows, &part.name));
         let picture = picture.map_err(|trouble| FileError::new(&folder.join(TABLE), trouble.0))?;
         write_text(&folder.join(&name), &picture)?;
         written.push(name);
     }
     Ok(written)
+}
+
+/// The revision of the program that made a study, which may not be this one.
+fn revision(folder: &Path) -> Result<String, FileError> {
+    let manifest = read_manifest(&folder.join("manifest.json"))?;
+    Ok(one_line(manifest["revision"].as_str().unwrap_or("unknown")))
 }
 
 /// A configuration's draws by condition.

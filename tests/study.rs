@@ -1,0 +1,219 @@
+//! Studies: what they write, that they go on where they were, and how they refuse what is no design.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+/// Bodies of few sensors, for a second or two.
+const SMALL: &str = "
+skin = { around = 8, along = 3 }
+physics = { duration = 1000.0 }
+schema = { chains = 4, sweeps = 60 }
+experiment = { simulations = 2, dimensions = [2, 4], coordinations = [0.5], dimension = 4 }
+baselines = { clusters = [5] }
+";
+
+fn sensitivity_design() -> String {
+    format!(
+        "seed = 3
+[settings]
+{SMALL}
+[[part]]
+name = \"levels\"
+title = \"Levels\"
+paper = \"N (4.1)\"
+settings = [\"quantise.levels\"]
+why = \"Chosen\"
+values = [{{ quantise = {{ levels = 3 }} }}]
+[[part]]
+name = \"gains\"
+title = \"Gains\"
+paper = \"Linear (5.1)\"
+settings = [\"motion.stiffness\"]
+why = \"Chosen\"
+values = [{{ motion = {{ stiffness = 0.2 }} }}, {{ motion = {{ stiffness = 1e5, damping = 1e5 }} }}]
+"
+    )
+}
+
+fn search_design() -> String {
+    let round = |candidates: usize, simulations: usize| {
+        let settings = SMALL.replace("simulations = 2", &format!("simulations = {simulations}"));
+        format!("[[round]]\ncandidates = {candidates}\n[round.settings]\n{settings}")
+    };
+    format!(
+        "seed = 1
+candidates = 2
+[[score]]
+claim = \"number-of-parts\"
+experiment = \"exp1\"
+weight = 1
+slack = 5
+[[score]]
+claim = \"best-coordination\"
+experiment = \"exp2\"
+weight = 1
+slack = 0.5
+{}{}
+[[start]]
+name = \"stable\"
+settings = {{ quantise = {{ levels = 3 }} }}
+[[start]]
+name = \"unstable\"
+settings = {{ motion = {{ stiffness = 1e5, damping = 1e5 }} }}
+[[factor]]
+name = \"edges\"
+options = [{{ schema = {{ edge_weight = \"collapsed\" }} }}]
+",
+        round(4, 1),
+        round(2, 2)
+    )
+}
+
+fn bodyschema(folder: &Path, arguments: &str) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_bodyschema"))
+        .current_dir(folder)
+        .args(arguments.split(' '))
+        .output()
+        .unwrap()
+}
+
+fn succeed(folder: &Path, arguments: &str) -> String {
+    let output = bodyschema(folder, arguments);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    String::from_utf8(output.stderr).unwrap()
+}
+
+/// The files of a folder but its checkpoints, by name.
+fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let mut all = BTreeMap::new();
+    for entry in fs::read_dir(folder).unwrap().map(Result::unwrap) {
+        let name = entry.file_name().into_string().unwrap();
+        if entry.path().is_file() {
+            all.insert(name, fs::read(entry.path()).unwrap());
+        } else if name != "checkpoints" {
+            all.extend(
+                files(&entry.path()).into_iter().map(|(inner, bytes)| (format!("{name}/{inner}"), bytes)),
+            );
+        }
+    }
+    all
+}
+
+#[test]
+fn a_study_says_what_each_value_does_goes_on_where_it_was_and_hangs_on_no_number_of_threads() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    fs::write(at("design.toml"), sensitivity_design()).unwrap();
+    succeed(folder.path(), "sensitivity --design design.toml --jobs 1 --out one");
+    let one = files(&at("one"));
+    assert_eq!(
+        one.keys().map(String::as_str).collect::<Vec<_>>(),
+        [
+            "DEVIATIONS.md",
+            "design.toml",
+            "figures/gains.svg",
+            "figures/levels.svg",
+            "manifest.json",
+            "sensitivity.csv"
+        ]
+    );
+    let page = fs::read_to_string(at("one/DEVIATIONS.md")).unwrap();
+    assert!(page.contains("| levels = 3 |") && page.contains("2 simulations failed: "), "{page}");
+    assert!(!page.contains("NaN"));
+    let mut table = csv::Reader::from_path(at("one/sensitivity.csv")).unwrap();
+    let rows: Vec<BTreeMap<String, String>> = table.deserialize().map(Result::unwrap).collect();
+    // Of the default and three values: two mixtures at two d, and another p; five measures each.
+    assert_eq!(rows.len(), 4 * 5 * 5);
+    for row in &rows {
+        assert_eq!(
+            row["difference"].is_empty(),
+            row["part"] == "default" || row["estimate"].is_empty() || {
+                let same = |other: &&BTreeMap<String, String>| {
+                    other["part"] == "default"
+                        && ["coordination", "dimension", "model", "measure"]
+                            .iter()
+                            .all(|key| other[*key] == row[*key])
+                };
+                rows.iter().find(same).unwrap()["estimate"].is_empty()
+            }
+        );
+        assert_eq!(row["failed"] == "2", row["value"].contains("damping"));
+    }
+
+    // A part is the same alone; what it shares with the whole study is taken from there.
+    let told = succeed(folder.path(), "sensitivity --design design.toml --only levels --jobs 3 --out one");
+    assert!(told.contains("going on"), "{told}");
+    let part = fs::read_to_string(at("one/DEVIATIONS.md")).unwrap();
+    assert!(part.contains("| levels = 3 |") && !part.contains("Gains"));
+    // Half of the checkpoints are lost.
+    let parts = fs::read_dir(at("one/checkpoints/parts")).unwrap().map(Result::unwrap);
+    parts.step_by(2).for_each(|part| fs::remove_file(part.path()).unwrap());
+    succeed(folder.path(), "sensitivity --design design.toml --jobs 3 --out one");
+    assert_eq!(files(&at("one")), one);
+
+    fs::remove_file(at("one/DEVIATIONS.md")).unwrap();
+    fs::remove_dir_all(at("one/figures")).unwrap();
+    succeed(folder.path(), "plot one");
+    assert_eq!(files(&at("one")), one);
+}
+
+#[test]
+fn a_search_keeps_the_best_and_shows_which_claims_hold_together() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    fs::write(at("design.toml"), search_design()).unwrap();
+    succeed(folder.path(), "search --design design.toml --jobs 1 --out one");
+    let one = files(&at("one"));
+    assert_eq!(
+        one.keys().map(String::as_str).collect::<Vec<_>>(),
+        ["best.toml", "credits.csv", "manifest.json", "scores.csv", "search.md"]
+    );
+    let scores = String::from_utf8(one["scores.csv"].clone()).unwrap();
+    let row = |start: &str| scores.lines().find(|line| line.starts_with(start)).unwrap().to_owned();
+    // The two random draws are the same, and count once; what is unstable is last.
+    assert_eq!(scores.lines().count(), 1 + 3 + 2);
+    assert!(row("1,3,").contains("unstable,0.0,"), "{scores}");
+    assert!(!scores.contains("\n2,3,") && !row("2,1,").contains("unstable"), "{scores}");
+    // As many terms as rows for each candidate and round.
+    assert_eq!(String::from_utf8(one["credits.csv"].clone()).unwrap().lines().count(), 1 + 2 * 5);
+    assert!(
+        String::from_utf8(one["search.md"].clone()).unwrap().contains("How often two claims hold together")
+    );
+    succeed(folder.path(), "verify one");
+    succeed(folder.path(), "search --design design.toml --jobs 2 --out two");
+    assert_eq!(files(&at("two")), one);
+    let best = fs::read_to_string(at("one/best.toml")).unwrap();
+    assert!(best.contains("levels = 3") || best.contains("edge_weight"), "{best}");
+    fs::write(at("short.toml"), format!("{best}\n[physics]\nduration = 10.0\n")).unwrap();
+    succeed(folder.path(), "simulate --settings short.toml --out body");
+}
+
+#[test]
+fn what_is_no_design_is_refused_in_one_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let refused = |command: &str, design: String, expected: &str| {
+        fs::write(folder.path().join("design.toml"), design).unwrap();
+        let output = bodyschema(folder.path(), &format!("{command} --design design.toml --out out"));
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{message}");
+        assert!(message.contains(expected), "{message:?} lacks {expected:?}");
+        assert_eq!(message.lines().count(), 1, "{message}");
+    };
+    let (study, search) = (sensitivity_design(), search_design());
+    refused("sensitivity", "seed = 3".to_owned(), "design.toml: ");
+    refused("sensitivity --only fins", study.clone(), "has no part `fins`; it has levels, gains");
+    refused("sensitivity", study.replace("\"gains\"", "\"levels\""), "`levels` is no name");
+    refused("sensitivity", study.replace("\"gains\"", "\"../gains\""), "`../gains` is no name");
+    refused("sensitivity", study.replace("quantise.levels", "quantise.layers"), "`quantise.layers`");
+    refused("sensitivity", study.replace("levels = 3", "levels = 1"), "quantise.levels");
+    refused("sensitivity", study.replace("levels = 3", "layers = 3"), "unknown setting `quantise.layers`");
+    refused("search", study.clone(), "design.toml: ");
+    refused("search", search.replace("number-of-parts", "beauty"), "no claim `beauty`");
+    refused("search", search.replace("slack = 5", "slack = 0"), "must be positive");
+    refused("search", search.replace("1e5", "-1.0"), "motion.stiffness");
+    let output = bodyschema(folder.path(), "search --design nothing.toml --out out");
+    assert_eq!(output.status.code(), Some(2));
+    assert!(String::from_utf8(output.stderr).unwrap().contains("nothing.toml"));
+}
