@@ -102,6 +102,16 @@ pub enum AngleError {
     Shortest,
 }
 
+/// Where a joint that moves goes to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Targets {
+    /// Each of a universal joint's two axes draws a target of its own.
+    Each,
+    /// Both axes of a joint share one target.
+    Shared,
+}
+
 /// Coordinated random movement and its controller (section 5.1).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -110,6 +120,8 @@ pub struct Motion {
     pub coordination: f64,
     /// Physics steps between two draws.
     pub epoch: usize,
+    /// Where a joint that moves goes to.
+    pub targets: Targets,
     /// k_p, N·m/rad. Higher is faster, and less stable at a given step.
     pub stiffness: f64,
     /// k_d, N·m·s/rad. Times the step over the part's axial inertia it must stay below about 1.

@@ -35,7 +35,7 @@ enum Range {
 
 use Range::{Numbers, Probabilities, Real, Whole, Word};
 
-const SETTINGS: [(&str, Range); 37] = [
+const SETTINGS: [(&str, Range); 38] = [
     ("agent.morphology", Word(&["chain", "star", "tee", "y"])),
     ("agent.part_length", Real(1e-3, 1e3)),
     ("agent.part_radius", Real(1e-3, 5.0)),
@@ -46,6 +46,7 @@ const SETTINGS: [(&str, Range); 37] = [
     ("skin.caps", Whole(0, 3832)),
     ("motion.coordination", Real(0.0, 1.0)),
     ("motion.epoch", Whole(1, i64::MAX as u64)),
+    ("motion.targets", Word(&["each", "shared"])),
     ("motion.stiffness", Real(0.0, 1e6)),
     ("motion.damping", Real(0.0, 1e6)),
     ("motion.error", Word(&["raw", "shortest"])),

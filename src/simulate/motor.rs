@@ -2,15 +2,15 @@
 //!
 //! Every joint is locked at the beginning. At every epoch each joint is drawn anew: with probability 1 − p
 //! it moves to a random target under a linear controller, otherwise it is locked at the angle it has. The
-//! paper leaves the controller's gains open, and whether a universal joint's two axes share one target:
-//! here each axis draws its own, uniform on [−π, π].
+//! paper leaves the controller's gains open, and whether a universal joint's two axes share one target; targets
+//! are uniform on [−π, π].
 
 use std::f64::consts::{PI, TAU};
 
 use rand::RngExt;
 
 use super::world::World;
-use crate::settings::{AngleError, Motion};
+use crate::settings::{AngleError, Motion, Targets};
 use crate::streams::Stream;
 
 /// The state of every joint's motor.
@@ -29,9 +29,13 @@ impl Motor {
     /// Draws for each joint whether it moves in the epoch that begins, and where to.
     pub fn draw(&mut self, world: &mut World, motion: &Motion, rng: &mut Stream) {
         for (joint, target) in self.targets.iter_mut().enumerate() {
-            *target = rng
-                .random_bool(1.0 - motion.coordination)
-                .then(|| [rng.random_range(-PI..=PI), rng.random_range(-PI..=PI)]);
+            *target = rng.random_bool(1.0 - motion.coordination).then(|| {
+                let mut angle = || rng.random_range(-PI..=PI);
+                match motion.targets {
+                    Targets::Each => [angle(), angle()],
+                    Targets::Shared => [angle(); 2],
+                }
+            });
             match target {
                 Some(_) => world.unlock(joint),
                 None => world.lock(joint),
@@ -72,6 +76,35 @@ fn angle_error(target: f64, angle: f64, kind: AngleError) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::agent::Agent;
+    use crate::settings::Settings;
+    use crate::streams::stream;
+
+    #[test]
+    fn both_axes_draw_a_target_each_or_share_one() {
+        let mut settings = Settings::paper();
+        settings.motion.coordination = 0.0;
+        let agent = Agent::new(&settings.agent, &settings.skin);
+        let mut drawn = |targets| {
+            settings.motion.targets = targets;
+            let mut motor = Motor::new(agent.joints.len());
+            let rng = &mut stream(1, 1, "motion", 0);
+            motor.draw(&mut World::new(&agent, &settings), &settings.motion, rng);
+            (motor.targets.iter().map(|target| target.expect("p = 0")).collect::<Vec<_>>(), rng.clone())
+        };
+        // After the draw of whether the joint moves, a draw for each axis or one for both.
+        let expected = |shared: bool| {
+            let mut rng = stream(1, 1, "motion", 0);
+            let target = |_| {
+                rng.random_bool(1.0);
+                let first = rng.random_range(-PI..=PI);
+                [first, if shared { first } else { rng.random_range(-PI..=PI) }]
+            };
+            (agent.joints.iter().map(target).collect::<Vec<_>>(), rng)
+        };
+        assert_eq!(drawn(Targets::Each), expected(false));
+        assert_eq!(drawn(Targets::Shared), expected(true));
+    }
 
     #[test]
     fn the_shortest_error_goes_the_short_way_round() {
