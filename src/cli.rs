@@ -19,7 +19,7 @@ use bodyschema::report;
 use bodyschema::reproduce::{self, Experiment, Run};
 use bodyschema::schema::{self, Model, Sample, infer};
 use bodyschema::sense::sense;
-use bodyschema::settings::{self, EdgeWeight, Keep, Scheme, Settings};
+use bodyschema::settings::{self, EdgeWeight, Keep, Scheme, Settings, Start};
 use bodyschema::simulate::simulate;
 use bodyschema::statistics;
 use bodyschema::streams::stream;
@@ -107,6 +107,9 @@ enum Command {
         #[arg(long, value_enum,
               help = with_default("Edge weight of the minimum spanning tree", paper().schema.edge_weight))]
         edge_weight: Option<EdgeWeight>,
+        #[arg(long, value_enum,
+              help = with_default("Labels that each chain starts with", paper().schema.start))]
+        start: Option<Start>,
         #[arg(long, value_enum,
               help = with_default("The last draw of each chain, or all after burn-in", paper().schema.keep))]
         keep: Option<Keep>,
@@ -280,6 +283,7 @@ impl Arguments {
                 chains,
                 sweeps,
                 edge_weight,
+                start,
                 keep,
                 burn_in,
                 common,
@@ -293,6 +297,7 @@ impl Arguments {
                 set(&mut schema.chains, chains);
                 set(&mut schema.sweeps, sweeps);
                 set(&mut schema.edge_weight, edge_weight);
+                set(&mut schema.start, start);
                 set(&mut schema.keep, keep);
                 set(&mut schema.burn_in, burn_in);
                 settings.validate()?;

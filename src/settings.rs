@@ -184,6 +184,18 @@ pub enum EdgeWeight {
     Collapsed,
 }
 
+/// The labels that a chain starts with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ValueEnum)]
+#[serde(rename_all = "kebab-case")]
+pub enum Start {
+    /// Uniform over the K components.
+    Uniform,
+    /// The K clusters of k-means from one random start.
+    KMeans,
+    /// All points in one component.
+    Single,
+}
+
 /// Which draws of a chain are kept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ValueEnum)]
 #[serde(rename_all = "kebab-case")]
@@ -210,6 +222,8 @@ pub struct Schema {
     pub scale: f64,
     /// Weight of the tree's edges.
     pub edge_weight: EdgeWeight,
+    /// The labels that a chain starts with.
+    pub start: Start,
     /// Gibbs sweeps of each chain.
     pub sweeps: usize,
     /// Independent chains.

@@ -187,6 +187,14 @@ fn foreign_data_is_clustered_and_every_draw_can_be_kept() {
         assert_eq!(found, ("5", "1.0", "true"), "{model}");
     }
 
+    for start in ["uniform", "k-means", "single"] {
+        succeed(folder.path(), &format!("infer clusters.npy --start {start} {shared} --out start-{start}"));
+    }
+    let draws = |out: &str| fs::read(folder.path().join(out).join("assignments.npy")).unwrap();
+    assert_eq!(draws("start-uniform"), draws("dpgmm-lj"), "the default");
+    assert_ne!(draws("start-k-means"), draws("dpgmm-lj"));
+    assert_ne!(draws("start-single"), draws("dpgmm-lj"));
+
     succeed(folder.path(), "infer clusters.npy --chains 2 --sweeps 12 --keep all --burn-in 4 --out all");
     let all = rows(&folder.path().join("all/samples.csv"));
     assert_eq!(header(&folder.path().join("all/samples.csv")), "chain,sweep,parts,log_posterior");
@@ -243,6 +251,7 @@ fn a_mistake_is_one_line_that_says_what_and_where_and_status_2() {
     fs::write(at("unknown.toml"), "[motion]\nspeed = 1").unwrap();
     fs::write(at("broken.toml"), "[motion\n").unwrap();
     fs::write(at("zero.toml"), "[schema]\ncomponents = 0").unwrap();
+    fs::write(at("start.toml"), "[schema]\nstart = \"random\"").unwrap();
     fs::write(at("wild.toml"), "[motion]\ncoordination = 0.0\nstiffness = 1e6\n[physics]\nduration = 60.0")
         .unwrap();
     fs::write(at("heavy.toml"), "[agent]\ndensity = 1e300").unwrap();
@@ -298,6 +307,7 @@ fn a_mistake_is_one_line_that_says_what_and_where_and_status_2() {
         ("infer nan.npy --out s", "row 1, column 0: NaN"),
         ("infer clusters.npy --components 0 --out s", "`schema.components` is 0, but must be 1 to 1000"),
         ("infer clusters.npy --settings zero.toml --out s", "`schema.components` is 0"),
+        ("infer clusters.npy --settings start.toml --out s", "unknown variant `random`"),
         ("infer clusters.npy --chains 0 --out s", "`schema.chains` is 0"),
         (
             "infer clusters.npy --labels short.csv --tree tree.csv --out s",

@@ -11,7 +11,7 @@ use bodyschema::body_map::BodyMap;
 use bodyschema::pipeline::StageError;
 use bodyschema::schema::gaussian::MixtureError;
 use bodyschema::schema::{Model, infer};
-use bodyschema::settings::{EdgeWeight, PAPER, Settings, SettingsError};
+use bodyschema::settings::{EdgeWeight, PAPER, Settings, SettingsError, Start};
 use bodyschema::streams::{Stream, stream};
 use indicatif::ProgressBar;
 use rand::RngExt;
@@ -35,7 +35,7 @@ enum Range {
 
 use Range::{Numbers, Probabilities, Real, Whole, Word};
 
-const SETTINGS: [(&str, Range); 38] = [
+const SETTINGS: [(&str, Range); 39] = [
     ("agent.morphology", Word(&["chain", "star", "tee", "y"])),
     ("agent.part_length", Real(1e-3, 1e3)),
     ("agent.part_radius", Real(1e-3, 5.0)),
@@ -62,6 +62,7 @@ const SETTINGS: [(&str, Range); 38] = [
     ("schema.extra_freedom", Real(-0.99, 1e6)),
     ("schema.scale", Real(1e-6, 1e6)),
     ("schema.edge_weight", Word(&["literal", "pairwise", "collapsed"])),
+    ("schema.start", Word(&["uniform", "k-means", "single"])),
     ("schema.sweeps", Whole(1, 10_000_000)),
     ("schema.chains", Whole(1, 71_428)),
     ("schema.keep", Word(&["last", "all"])),
@@ -221,6 +222,7 @@ fn mixtures_of_extreme_priors_on_nearly_flat_maps_end_in_samples_or_in_an_error(
         (schema.chains, schema.sweeps, schema.components) = (1, 10, *[2, 10, 300].choose(rng).unwrap());
         schema.edge_weight =
             *[EdgeWeight::Literal, EdgeWeight::Pairwise, EdgeWeight::Collapsed].choose(rng).unwrap();
+        schema.start = *[Start::Uniform, Start::KMeans, Start::Single].choose(rng).unwrap();
         schema.concentration = between(1e-6, 1e6, rng);
         schema.mean_weight = between(1e-6, 1e6, rng);
         schema.extra_freedom = between(1e-2, 1e6, rng) - 1.0;

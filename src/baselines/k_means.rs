@@ -4,9 +4,9 @@
 //! advantages of careful seeding". Ours is scikit-learn's with `tol=0`, except that it sums the squares of
 //! differences, which loses no digits.
 
-use rand::RngExt;
 use rand::distr::Distribution;
 use rand::distr::weighted::WeightedIndex;
+use rand::{Rng, RngExt};
 
 use crate::body_map::BodyMap;
 use crate::schema::points::Points;
@@ -35,7 +35,7 @@ pub fn k_means(map: &BodyMap, clusters: usize, restarts: usize, rng: &mut Stream
 
 /// Lloyd's algorithm from one start: assigns points to the nearest centre and moves centres to the means of
 /// their points until no label changes.
-pub(super) fn descend(points: &Points, clusters: usize, rng: &mut Stream) -> Partition {
+pub(crate) fn descend(points: &Points, clusters: usize, rng: &mut impl Rng) -> Partition {
     let mut centres = starts(points, clusters, rng);
     let mut labels = Vec::new();
     let mut inertia = 0.0;
@@ -57,7 +57,7 @@ pub(super) fn descend(points: &Points, clusters: usize, rng: &mut Stream) -> Par
 /// squares is taken, the variant at the end of Arthur & Vassilvitskii's paper.
 ///
 /// There are fewer than K centres if all points coincide with one of fewer.
-fn starts(points: &Points, clusters: usize, rng: &mut Stream) -> Vec<Vec<f64>> {
+fn starts(points: &Points, clusters: usize, rng: &mut impl Rng) -> Vec<Vec<f64>> {
     if points.count == 0 {
         return Vec::new();
     }

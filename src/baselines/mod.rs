@@ -12,6 +12,7 @@ use clap::ValueEnum;
 use serde::{Deserialize, Serialize};
 
 pub use self::gmm::{MixtureFit, gmm, ridge};
+pub(crate) use self::k_means::descend;
 pub use self::k_means::{Partition, k_means};
 pub use self::ward::ward;
 use crate::body_map::BodyMap;

@@ -18,7 +18,8 @@ use super::joints;
 use super::labels;
 use super::points::{Points, Statistics};
 use super::tree::{Edge, prim};
-use crate::settings::{EdgeWeight, Schema};
+use crate::baselines::descend;
+use crate::settings::{EdgeWeight, Schema, Start};
 
 /// A latent joint with its edge of the tree.
 #[derive(Debug, Clone, PartialEq)]
@@ -48,7 +49,7 @@ pub struct Chain<'a> {
 }
 
 impl<'a> Chain<'a> {
-    /// Starts from labels uniform over the K components, and draws all else given them.
+    /// Starts from the labels that the settings say, and draws all else given them.
     ///
     /// # Errors
     /// [`MixtureError::Rounding`]; so for all that follow.
@@ -60,12 +61,17 @@ impl<'a> Chain<'a> {
         rng: &mut impl Rng,
     ) -> Result<Self, MixtureError> {
         let components = settings.components;
+        let labels = match settings.start {
+            Start::Uniform => (0..points.count).map(|_| rng.random_range(0..components)).collect(),
+            Start::KMeans => descend(points, components, rng).labels,
+            Start::Single => vec![0; points.count],
+        };
         let mut chain = Self {
             points,
             prior,
             settings,
             model,
-            labels: (0..points.count).map(|_| rng.random_range(0..components)).collect(),
+            labels,
             gaussians: Vec::new(),
             log_weights: Vec::new(),
             joints: Vec::new(),

@@ -23,6 +23,28 @@ fn start<'a>(
     Chain::start(points, prior, settings, Model::Dpgmm, rng).unwrap()
 }
 
+#[test]
+fn a_chain_starts_from_labels_of_the_named_kind() {
+    // Three far clusters of 20 points.
+    let mut rng = stream(2, 1, "far clusters", 0);
+    let coordinates = (0..60).map(|i| f64::from(i % 3 * 100) + rng.random_range(-1.0..1.0)).collect();
+    let points = Points::from_rows(1, coordinates);
+    let prior = NormalInverseWishart::new(DVector::zeros(1), 0.5, DMatrix::identity(1, 1), 3.0).unwrap();
+    let first = |start_with, components, chain| {
+        let settings = Schema { start: start_with, ..settings(components) };
+        start(&points, &prior, &settings, &mut stream(2, 1, "start", chain)).labels
+    };
+    let mut uniform = stream(2, 1, "start", 0);
+    let expected: Vec<usize> = (0..60).map(|_| uniform.random_range(0..5)).collect();
+    assert_eq!(first(Start::Uniform, 5, 0), expected);
+    assert_eq!(first(Start::Single, 5, 0), [0; 60]);
+    for chain in 0..5 {
+        let found = first(Start::KMeans, 3, chain);
+        assert!((0..60).all(|i| (found[i] == found[0]) == (i % 3 == 0) && found[i] == found[i % 3]));
+    }
+    assert_ne!(first(Start::KMeans, 5, 0), first(Start::KMeans, 5, 1), "each chain draws a start of its own");
+}
+
 /// What a broken twin does after a correct step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Mutant {
