@@ -8,6 +8,7 @@ use std::process::ExitCode;
 use anyhow::{Context, Result, ensure};
 use bodyschema::agent::Agent;
 use bodyschema::body_map::ClassicalScaling;
+use bodyschema::body_maps::BodyMaps;
 use bodyschema::claims::{Verdict, table};
 use bodyschema::distance::information_metric;
 use bodyschema::evaluate::{Score, Truth, parts, score};
@@ -19,8 +20,9 @@ use bodyschema::report;
 use bodyschema::reproduce::{self, Experiment, Run};
 use bodyschema::schema::{self, Model, Sample, infer};
 use bodyschema::sense::sense;
-use bodyschema::settings::{self, EdgeWeight, Keep, Scheme, Settings, Start};
+use bodyschema::settings::{self, EdgeWeight, Keep, MapMethod, Scheme, Settings, Start};
 use bodyschema::simulate::simulate;
+use bodyschema::smacof::Improvement;
 use bodyschema::statistics;
 use bodyschema::streams::stream;
 use bodyschema::study::{search, sensitivity};
@@ -72,16 +74,22 @@ enum Command {
         #[arg(long, value_name = "FILE")]
         out: PathBuf,
     },
-    /// Stage 5: places the sensors in D dimensions by classical multidimensional scaling.
+    /// Stage 5: places the sensors in D dimensions by multidimensional scaling.
     ///
-    /// Reads distances (M x M) and writes coordinates (float64, M x D, columns by descending eigenvalue, in
-    /// the unit of the distances).
+    /// Reads distances (M x M) and writes coordinates (float64, M x D, in the unit of the distances; columns of
+    /// the classical map by descending eigenvalue). Of smacof and nonmetric, which start from the classical map, it
+    /// prints Kruskal's stress-1.
     Map {
         /// Distances: a .npy file, M x M, symmetric.
         distance: PathBuf,
         /// Number of dimensions.
         #[arg(long, value_name = "D")]
         dims: usize,
+        #[arg(long, value_enum,
+              help = with_default("Variant of multidimensional scaling", paper().map.method))]
+        method: Option<MapMethod>,
+        #[command(flatten)]
+        file: SettingsFile,
         /// The body map to write.
         #[arg(long, value_name = "FILE")]
         out: PathBuf,
@@ -275,7 +283,11 @@ impl Arguments {
                 settings.validate()?;
                 run_distance(&tactile, symbols, &settings, &out)?;
             }
-            Command::Map { distance, dims, out } => run_map(&distance, dims, &out)?,
+            Command::Map { distance, dims, method, file, out } => {
+                let mut settings = Settings::load(false, file.settings.as_deref())?;
+                set(&mut settings.map.method, method);
+                run_map(&distance, dims, settings.map.method, &out)?;
+            }
             Command::Infer {
                 body_map,
                 model,
@@ -422,20 +434,24 @@ fn run_distance(input: &Path, are_symbols: bool, settings: &Settings, out: &Path
     ))
 }
 
-fn run_map(input: &Path, dims: usize, out: &Path) -> Result<()> {
+fn run_map(input: &Path, dims: usize, method: MapMethod, out: &Path) -> Result<()> {
     ensure!(dims >= 1, "--dims is 0, but must be at least 1");
     let distances = npy::read_distances(input)?;
     let in_file = || input.display().to_string();
     let scaling = ClassicalScaling::new(&distances, dims).with_context(in_file)?;
-    let map = scaling.coordinates(dims).with_context(in_file)?;
+    let (maps, improvements) = BodyMaps::new(&distances, &scaling, method, &[dims]).with_context(in_file)?;
+    let map = maps.in_dims(dims);
     npy::write_body_map(out, &map)?;
-    say(format!(
-        "body map of {} sensors in {dims} dimensions, in {}; its eigenvalues make up {:.2} % of the sum of squares \
-         of all",
-        map.points(),
-        out.display(),
-        100.0 * scaling.agreement(dims)
-    ))
+    let fit = match improvements.first() {
+        None => format!(
+            "its eigenvalues make up {:.2} % of the sum of squares of all",
+            100.0 * scaling.agreement(dims)
+        ),
+        Some(Improvement { start, stress, steps, .. }) => {
+            format!("its stress-1 is {stress:.4} after {steps} steps from {start:.4} of the classical map")
+        }
+    };
+    say(format!("body map of {} sensors in {dims} dimensions, in {}; {fit}", map.points(), out.display()))
 }
 
 fn run_infer(

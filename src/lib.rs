@@ -3,7 +3,8 @@
 //!
 //! An [`agent`] of five cylinders moves at random in Open Dynamics Engine ([`simulate`]). The pressure of
 //! the fluid on its sensors ([`sense`]) is turned into symbols ([`quantise`]); how much the symbols of two
-//! sensors tell of each other is their [`distance`], and the distances place all sensors on a [`body_map`].
+//! sensors tell of each other is their [`distance`], and the distances place all sensors on a [`body_map`], which
+//! [`smacof`] may improve; an experiment has several [`body_maps`].
 //! A mixture with latent joints finds parts and their tree on it, the body [`schema`]; [`baselines`] cluster it
 //! in other ways, and the truth says how well ([`evaluate`]). [`pipeline`] composes these stages;
 //! [`reproduce`] runs an experiment of them and sums it up for its [`conditions`], from which [`figures`] and
@@ -13,6 +14,7 @@
 pub mod agent;
 pub mod baselines;
 pub mod body_map;
+pub mod body_maps;
 pub mod claims;
 pub mod conditions;
 pub mod distance;
@@ -30,6 +32,7 @@ pub mod schema;
 pub mod sense;
 pub mod settings;
 pub mod simulate;
+pub mod smacof;
 pub mod statistics;
 pub mod streams;
 pub mod study;

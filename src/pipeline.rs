@@ -6,7 +6,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::agent::Agent;
 use crate::baselines::{Clustering, cluster};
-use crate::body_map::{BodyMap, ClassicalScaling, MapError};
+use crate::body_map::{ClassicalScaling, MapError};
+use crate::body_maps::BodyMaps;
 use crate::distance::{Distances, information_metric};
 use crate::evaluate::{Truth, adjusted_rand_index, parts, score};
 use crate::quantise::quantise;
@@ -16,6 +17,7 @@ use crate::sense::{Tactile, sense};
 use crate::settings::Settings;
 use crate::simulate::simulate;
 use crate::simulate::world::Unstable;
+use crate::smacof::Improvement;
 use crate::streams::stream;
 
 /// What the inference and its evaluation need of one simulation.
@@ -23,9 +25,8 @@ use crate::streams::stream;
 pub struct Body {
     /// The true parts and tree, which the inference must not see.
     pub truth: Truth,
-    /// The body map of the largest dimension, whose first columns are those of fewer; none where no sensor
-    /// differs from another, as when nothing ever moves (p = 1).
-    pub map: Option<BodyMap>,
+    /// The body maps; none where no sensor differs from another, as when nothing ever moves (p = 1).
+    pub maps: Option<BodyMaps>,
 }
 
 /// What stages 1 to 5 make of one simulation.
@@ -44,10 +45,13 @@ pub struct MappedBody {
 pub struct Facts {
     /// Sensors that showed one symbol throughout.
     pub constant_sensors: usize,
-    /// Eigenvalues of the map's dimensions, descending, bits².
+    /// Eigenvalues of the dimensions of the largest classical map, descending, bits².
     pub eigenvalues: Vec<f64>,
-    /// How well the map agrees with the distances; see [`ClassicalScaling::agreement`].
+    /// How well that map agrees with the distances; see [`ClassicalScaling::agreement`].
     pub map_agreement: f64,
+    /// How far each map is better than the classical one; of classical maps nothing.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub improvements: Vec<Improvement>,
 }
 
 /// A draw and its evaluation: a row of an experiment's `samples.csv`.
@@ -127,21 +131,28 @@ pub fn feel(settings: &Settings, simulation: usize, progress: &ProgressBar) -> R
     Ok(FeltBody { tactile, truth: Truth { labels: agent.labels(), tree: agent.tree() } })
 }
 
-/// Stages 3 to 5, to a map of `dims` dimensions.
+/// Stages 3 to 5, to maps of each of `dims` dimensions, of which there is at least one.
 ///
 /// # Errors
 /// If the distances cannot be scaled.
-pub fn map_felt(felt: &FeltBody, settings: &Settings, dims: usize) -> Result<MappedBody, StageError> {
+pub fn map_felt(felt: &FeltBody, settings: &Settings, dims: &[usize]) -> Result<MappedBody, StageError> {
     let symbols = quantise(&felt.tactile, &settings.quantise);
     let distances = information_metric(&symbols);
-    let scaling = ClassicalScaling::new(&distances, dims)?;
+    let largest = dims.iter().copied().max().expect("there is a dimension to map to");
+    let scaling = ClassicalScaling::new(&distances, largest)?;
+    let (maps, improvements) = if scaling.positive() == 0 {
+        (None, Vec::new())
+    } else {
+        let (maps, improvements) = BodyMaps::new(&distances, &scaling, settings.map.method, dims)?;
+        (Some(maps), improvements)
+    };
     let facts = Facts {
         constant_sensors: symbols.constant_sensors().len(),
-        map_agreement: scaling.agreement(dims),
-        eigenvalues: scaling.eigenvalues.clone(),
+        map_agreement: scaling.agreement(largest),
+        eigenvalues: scaling.eigenvalues,
+        improvements,
     };
-    let map = if scaling.positive() == 0 { None } else { Some(scaling.coordinates(dims)?) };
-    Ok(MappedBody { body: Body { truth: felt.truth.clone(), map }, distances, facts })
+    Ok(MappedBody { body: Body { truth: felt.truth.clone(), maps }, distances, facts })
 }
 
 /// What the inference says of one body map.
@@ -168,13 +179,14 @@ pub fn infer_and_score(
     progress: &ProgressBar,
 ) -> Result<Inference, StageError> {
     let schema = &settings.schema;
-    let samples = match &body.map {
+    let samples = match &body.maps {
         None => {
             progress.inc(schema.chains as u64);
             one_part(body.truth.labels.len(), schema)
         }
-        Some(map) => {
-            infer(&map.first(dimension), model, schema, settings.experiment.seed, simulation, progress)?
+        Some(maps) => {
+            let map = maps.in_dims(dimension);
+            infer(&map, model, schema, settings.experiment.seed, simulation, progress)?
         }
     };
     let record = |sample: &Sample| {
@@ -206,7 +218,7 @@ pub fn cluster_and_score(
     simulation: usize,
 ) -> Vec<BaselineRecord> {
     let Settings { baselines, experiment, motion, .. } = settings;
-    let map = body.map.as_ref().map(|map| map.first(dimension));
+    let map = body.maps.as_ref().map(|maps| maps.in_dims(dimension));
     let conditions: Vec<(Clustering, usize)> = Clustering::ALL
         .into_iter()
         .flat_map(|method| baselines.clusters.iter().map(move |&k| (method, k)))

@@ -40,6 +40,8 @@ pub struct Settings {
     pub sense: Sense,
     /// From pressures to symbols (section 4.1).
     pub quantise: Quantise,
+    /// From distances to body maps (section 4.1).
+    pub map: Map,
     /// The DPGMM-LJ and its sampler (section 3).
     pub schema: Schema,
     /// The clusterings to compare with (section 5.2).
@@ -170,6 +172,26 @@ pub struct Quantise {
     pub scheme: Scheme,
     /// N, number of levels, 2 to 256.
     pub levels: usize,
+}
+
+/// The variant of multidimensional scaling.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ValueEnum)]
+#[serde(rename_all = "kebab-case")]
+pub enum MapMethod {
+    /// Torgerson's: the largest eigenvalues of the inner products.
+    Classical,
+    /// Metric: the least sum of squared differences to the distances, from the classical map on.
+    Smacof,
+    /// Kruskal's: the same to numbers that only rise as the distances do.
+    Nonmetric,
+}
+
+/// Multidimensional scaling (section 4.1).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Map {
+    /// Its variant.
+    pub method: MapMethod,
 }
 
 /// The weight of an edge in the update of the tree (equation 21).

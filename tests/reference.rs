@@ -8,6 +8,7 @@ use bodyschema::quantise::Symbols;
 use bodyschema::schema::gaussian::NormalInverseWishart;
 use bodyschema::schema::points::Statistics;
 use bodyschema::schema::tree::prim;
+use bodyschema::smacof::{Fit, Majorisation};
 use bodyschema::statistics;
 use bodyschema::streams::stream;
 use nalgebra::{DMatrix, DVector};
@@ -17,6 +18,7 @@ use serde::Deserialize;
 struct Reference {
     information_metric: InformationMetric,
     classical_scaling: Scaling,
+    majorisation: Majorised,
     adjusted_rand: Vec<AdjustedRand>,
     spanning_trees: Vec<SpanningTree>,
     marginal_likelihoods: Vec<MarginalLikelihood>,
@@ -37,6 +39,15 @@ struct Scaling {
     eigenvalues: Vec<f64>,
     agreement: f64,
     within: Vec<Vec<f64>>,
+}
+
+#[derive(Deserialize)]
+struct Majorised {
+    steps: usize,
+    metric: Vec<Vec<f64>>,
+    metric_stress: f64,
+    start: Vec<Vec<f64>>,
+    nonmetric: Vec<Vec<f64>>,
 }
 
 #[derive(Deserialize)]
@@ -161,13 +172,45 @@ fn body_maps_agree_with_numpy_eigh() {
     let twin = ClassicalScaling::new(&Distances { sensors, values: squared }, 1).unwrap();
     assert!((twin.eigenvalues[0] - eigenvalues[0]).abs() > 1.0, "squaring once too often would be seen");
     let map = scaling.coordinates(3).unwrap();
-    let row = |i: usize| &map.coordinates[3 * i..][..3];
-    for (i, distances) in within.iter().enumerate() {
-        for (j, expected) in distances.iter().enumerate() {
-            let found = row(i).iter().zip(row(j)).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();
-            close(found, *expected, 1e-8);
-        }
-    }
+    assert!(farthest_from(&map, &within) < 1e-8);
+}
+
+/// The largest difference of a distance within a map.
+fn farthest_from(map: &BodyMap, within: &[Vec<f64>]) -> f64 {
+    let row = |i: usize| &map.coordinates[map.dims * i..][..map.dims];
+    let distance =
+        |i, j| row(i).iter().zip(row(j)).map(|(a, b): (&f64, &f64)| (a - b).powi(2)).sum::<f64>().sqrt();
+    let pairs = (0..within.len()).flat_map(|i| (0..within.len()).map(move |j| (i, j)));
+    pairs.map(|(i, j)| (distance(i, j) - within[i][j]).abs()).fold(0.0, f64::max)
+}
+
+#[test]
+fn majorisation_agrees_with_scikit_learn_step_by_step() {
+    let Reference { classical_scaling, majorisation, .. } = reference();
+    let Majorised { steps, metric, metric_stress, start, nonmetric } = majorisation;
+    let sensors = start.len();
+    let distances = Distances { sensors, values: classical_scaling.distances.concat() };
+    let after = |map: &BodyMap, fit, steps| {
+        let mut state = Majorisation::new(&distances, map.clone(), fit);
+        (0..steps).for_each(|_| state.step());
+        (state.map().clone(), state.raw_stress())
+    };
+    let classical = ClassicalScaling::new(&distances, 2).unwrap().coordinates(2).unwrap();
+    let start = BodyMap { dims: 2, coordinates: start.concat() };
+    let (map, stress) = after(&classical, Fit::Metric, steps);
+    close(stress / metric_stress, 1.0, 1e-9);
+    assert!(farthest_from(&map, &metric) < 1e-9);
+    let off = farthest_from(&after(&start, Fit::Nonmetric, steps).0, &nonmetric);
+    assert!(off < 1e-9, "{off:e}");
+    assert!(
+        farthest_from(&after(&classical, Fit::Metric, steps - 1).0, &metric) > 1e-4,
+        "a lost step is seen"
+    );
+    assert!(
+        farthest_from(&after(&start, Fit::Nonmetric, steps - 1).0, &nonmetric) > 1e-4,
+        "a lost step is seen"
+    );
+    assert!(farthest_from(&after(&start, Fit::Metric, steps).0, &nonmetric) > 0.1, "the wrong fit is seen");
 }
 
 #[test]

@@ -35,7 +35,7 @@ enum Range {
 
 use Range::{Numbers, Probabilities, Real, Whole, Word};
 
-const SETTINGS: [(&str, Range); 39] = [
+const SETTINGS: [(&str, Range); 40] = [
     ("agent.morphology", Word(&["chain", "star", "tee", "y"])),
     ("agent.part_length", Real(1e-3, 1e3)),
     ("agent.part_radius", Real(1e-3, 5.0)),
@@ -56,6 +56,7 @@ const SETTINGS: [(&str, Range); 39] = [
     ("sense.fluid_density", Real(1e-6, 1e6)),
     ("quantise.scheme", Word(&["per-sensor", "pooled", "equal-width"])),
     ("quantise.levels", Whole(2, 256)),
+    ("map.method", Word(&["classical", "smacof", "nonmetric"])),
     ("schema.components", Whole(1, 1000)),
     ("schema.concentration", Real(1e-6, 1e6)),
     ("schema.mean_weight", Real(1e-6, 1e6)),

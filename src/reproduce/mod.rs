@@ -156,12 +156,12 @@ fn over_dimensions(
         work.cluster(settings, &body, d, simulation, &place)?;
         for model in Model::ALL {
             let best = work.infer(settings, &body, (d, model), simulation, &place, &bar)?;
-            if let Some(map) = &body.map
+            if let Some(maps) = &body.maps
                 && simulation == 1
                 && model == Model::DpgmmLj
                 && (2..=3).contains(&d)
             {
-                figures.map(&map.first(d), &body.truth.labels, &best)?;
+                figures.map(&maps.in_dims(d), &body.truth.labels, &best)?;
             }
         }
     }
@@ -199,13 +199,18 @@ impl Run<'_> {
         Agent::new(agent, skin).sites.len()
     }
 
-    /// The largest d of its body maps.
-    pub fn largest_dimension(&self) -> usize {
+    /// d of its body maps, rising.
+    pub fn dimensions(&self) -> &[usize] {
         let settings = &self.settings.experiment;
         match self.experiment {
-            Experiment::Exp1 => *settings.dimensions.last().expect("validated as not empty"),
-            Experiment::Exp2 => settings.dimension,
+            Experiment::Exp1 => &settings.dimensions,
+            Experiment::Exp2 => std::slice::from_ref(&settings.dimension),
         }
+    }
+
+    /// The largest of them.
+    pub fn largest_dimension(&self) -> usize {
+        *self.dimensions().last().expect("validated as not empty")
     }
 }
 

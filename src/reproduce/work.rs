@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::json;
 
 use super::{ReproduceError, Run};
+use crate::body_maps::BodyMaps;
 use crate::pipeline::{self, BaselineRecord, Body, Facts, Inference, Record};
 use crate::progress::progress;
 use crate::record::checkpoint::Checkpoints;
@@ -28,7 +29,7 @@ pub struct Work<'a> {
     pub begun: (SystemTime, Instant),
 }
 
-/// A finished body map: its files are the result, of which a checkpoint keeps the hashes.
+/// Finished body maps: their files are the result, of which a checkpoint keeps the hashes.
 #[derive(Serialize, Deserialize)]
 struct MappedFiles {
     facts: Facts,
@@ -68,24 +69,24 @@ impl<'a> Work<'a> {
             Some(finished) => finished,
             None => {
                 let bar = progress(settings.samples() as u64 + 1, format!("{place}: body map"));
-                let dims = self.run.largest_dimension();
-                let mapped =
-                    pipeline::map_felt(&pipeline::feel(settings, simulation, &bar)?, settings, dims)?;
+                let felt = pipeline::feel(settings, simulation, &bar)?;
+                let mapped = pipeline::map_felt(&felt, settings, self.run.dimensions())?;
                 bar.finish_and_clear();
                 let folder = self.run.out.join(place);
-                let mut names = vec!["labels.csv", "tree.csv"];
-                tables::write_truth(&folder.join(names[0]), &folder.join(names[1]), &mapped.body.truth)?;
+                let mut names = vec!["labels.csv".to_owned(), "tree.csv".to_owned()];
+                tables::write_truth(&folder.join(&names[0]), &folder.join(&names[1]), &mapped.body.truth)?;
                 if with_distances {
                     npy::write_distances(&folder.join("distance.npy"), &mapped.distances)?;
-                    names.push("distance.npy");
+                    names.push("distance.npy".to_owned());
                 }
-                if let Some(map) = &mapped.body.map {
-                    npy::write_body_map(&folder.join("body-map.npy"), map)?;
-                    names.push("body-map.npy");
+                for (name, map) in mapped.body.maps.iter().flat_map(BodyMaps::files) {
+                    npy::write_body_map(&folder.join(&name), map)?;
+                    names.push(name);
                 }
                 let mut files = Vec::new();
                 for name in names {
-                    files.push((name.to_owned(), sha256(&folder.join(name))?));
+                    let hash = sha256(&folder.join(&name))?;
+                    files.push((name, hash));
                 }
                 let finished = MappedFiles { facts: mapped.facts, files };
                 self.checkpoints.keep(&part, &finished)?;
@@ -102,7 +103,7 @@ impl<'a> Work<'a> {
         Ok(body)
     }
 
-    /// A body map that an earlier run finished, if its files are still what they were.
+    /// Body maps that an earlier run finished, if their files are still what they were.
     fn recall_body(&self, part: &str, place: &str) -> Option<(Body, MappedFiles)> {
         let finished: MappedFiles = self.checkpoints.recall(part)?;
         let folder = self.run.out.join(place);
@@ -116,13 +117,14 @@ impl<'a> Work<'a> {
                 return None;
             }
         }
-        let has_map = finished.files.iter().any(|(name, _)| name == "body-map.npy");
-        let map = has_map.then(|| npy::read_body_map(&folder.join("body-map.npy")).ok());
+        let maps = finished.files.iter().filter(|(name, _)| name.starts_with("body-map"));
         // A map that is there and cannot be read is no map of ours.
-        let map = map.map_or(Some(None), |map| map.map(Some))?;
+        let maps: Option<Vec<_>> =
+            maps.map(|(name, _)| npy::read_body_map(&folder.join(name)).ok()).collect();
+        let maps = BodyMaps::of(self.run.settings.map.method, maps?);
         let sensors = self.run.sensors();
         let truth = tables::read_truth(&folder.join("labels.csv"), &folder.join("tree.csv"), sensors).ok()?;
-        Some((Body { truth, map }, finished))
+        Some((Body { truth, maps }, finished))
     }
 
     /// Stages 6 and 7 of one condition. Returns the draw of highest log posterior.

@@ -13,6 +13,7 @@ import scipy.sparse.csgraph
 import scipy.special
 import scipy.stats
 import sklearn.cluster
+import sklearn.manifold
 import sklearn.metrics
 import sklearn.mixture
 from statsmodels.stats.proportion import confint_proportions_2indep, proportion_confint
@@ -56,6 +57,37 @@ def classical_scaling():
         "eigenvalues": values.tolist(),
         "agreement": agreement,
         "within": within.tolist(),
+    }
+
+
+def majorisation(distances):
+    """Maps of 2 dimensions after 25 steps of scikit-learn's SMACOF, started from the classical ones.
+
+    Its first nonmetric step takes the distances for disparities, ours does not: the start is what that step makes of the
+    classical map, in the unit in which its disparities, whose sum of squares is n(n - 1)/2, have that of the start.
+    """
+    distances = np.array(distances)
+    n = len(distances)
+    centring = np.eye(n) - 1 / n
+    values, vectors = np.linalg.eigh(-0.5 * centring @ distances**2 @ centring)
+    classical = vectors[:, :-3:-1] * np.sqrt(values[:-3:-1])
+
+    def smacof(start, steps, **options):
+        return sklearn.manifold.smacof(distances, n_components=2, init=start, n_init=1, max_iter=steps, eps=0, **options)
+
+    def within(points):
+        return np.linalg.norm(points[:, None] - points[None], axis=2)
+
+    metric, stress = smacof(classical, 25, normalized_stress=False)
+    start, _ = smacof(classical, 1, metric=False)
+    nonmetric, _ = smacof(classical, 26, metric=False)
+    start *= np.sqrt(n * (n - 1) / (within(start) ** 2).sum())
+    return {
+        "steps": 25,
+        "metric": within(metric).tolist(),
+        "metric_stress": stress,
+        "start": start.tolist(),
+        "nonmetric": within(nonmetric).tolist(),
     }
 
 
@@ -168,7 +200,8 @@ def baselines():
 
 reference = {
     "information_metric": information_metric(),
-    "classical_scaling": classical_scaling(),
+    "classical_scaling": (scaling := classical_scaling()),
+    "majorisation": majorisation(scaling["distances"]),
     "adjusted_rand": adjusted_rand(),
     "spanning_trees": spanning_trees(),
     "marginal_likelihoods": marginal_likelihoods(),

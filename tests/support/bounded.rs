@@ -41,7 +41,7 @@ pub fn bounded(settings: &Settings) -> Settings {
 pub fn run_every_stage(settings: &Settings) -> Result<(), StageError> {
     let dimension = settings.experiment.dimensions[0];
     let felt = feel(settings, 1, &ProgressBar::hidden())?;
-    let mapped = map_felt(&felt, settings, dimension)?;
+    let mapped = map_felt(&felt, settings, &[dimension])?;
     assert!(mapped.distances.values.iter().all(|distance| (0.0..=16.0).contains(distance)));
     for model in Model::ALL {
         let found = infer_and_score(&mapped.body, dimension, model, settings, 1, &ProgressBar::hidden())?;
