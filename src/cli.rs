@@ -140,7 +140,7 @@ enum Command {
     ///
     /// Writes into DIR: report.html (all of it in one page), claims.csv and claims.md (a row a claim),
     /// figures/*.csv and *.svg (data and pictures of the paper's figures), samples.csv (a row a draw),
-    /// baselines.csv (a row a clustering), simulation-N/ (distances, body map, truth; in experiment 2
+    /// baselines.csv (a row a clustering), simulation-N/ (distances, body maps, truth; in experiment 2
     /// p-P/simulation-N/ without distances) and manifest.json.
     Reproduce {
         /// The experiment.

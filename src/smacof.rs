@@ -20,7 +20,8 @@ use crate::distance::Distances;
 /// A step that lessens raw stress by a smaller share is the last one: as many steps again as are allowed would
 /// then lessen it by some 0.03 % more.
 const TOLERANCE: f64 = 1e-6;
-/// Steps after which it ends in any case.
+/// Steps after which it ends in any case. Maps of 840 sensors are among those: 300 further steps in 14 dimensions take
+/// another 1 % off the raw stress, of which the first 300 leave 7 %.
 const STEPS: usize = 300;
 
 /// What the distances within a map are fitted to.

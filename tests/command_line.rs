@@ -98,6 +98,28 @@ fn stages_by_hand_repeat_the_experiment() {
 }
 
 #[test]
+fn maps_of_less_stress_by_hand_repeat_the_experiment() {
+    let folder = folder_with_settings();
+    for method in ["smacof", "nonmetric"] {
+        let only = "simulations = 1\n[motion]\ntargets = \"shared\"\n[map]\nmethod = ";
+        let settings = format!("{SMALL}{only}\"{method}\"").replace("simulations = 2\n", "");
+        let settings = settings.replace("sweeps = 60", "sweeps = 60\nstart = \"k-means\"");
+        fs::write(folder.path().join("mine.toml"), settings).unwrap();
+        let experiment =
+            bodyschema(folder.path(), &format!("reproduce exp1 --settings mine.toml --out {method}"));
+        assert!(experiment.status.code().unwrap() <= 1, "{experiment:?}");
+        for option in [format!("--method {method}"), "--settings mine.toml".to_owned()] {
+            let distance = format!("{method}/simulation-1/distance.npy");
+            let said = succeed(folder.path(), &format!("map {distance} --dims 4 {option} --out map.npy"));
+            assert!(said.contains("its stress-1 is 0.") && said.contains("of the classical map"), "{said}");
+            let whole = folder.path().join(method).join("simulation-1/body-map-4.npy");
+            assert_eq!(fs::read(folder.path().join("map.npy")).unwrap(), fs::read(whole).unwrap());
+        }
+        assert!(!rows(&folder.path().join(method).join("figures/fig06a-map-2d.csv")).is_empty());
+    }
+}
+
+#[test]
 fn an_experiment_is_the_same_on_any_number_of_threads_and_complete() {
     let folder = folder_with_settings();
     let files = |jobs: usize| {
@@ -251,6 +273,7 @@ fn a_mistake_is_one_line_that_says_what_and_where_and_status_2() {
     fs::write(at("unknown.toml"), "[motion]\nspeed = 1").unwrap();
     fs::write(at("broken.toml"), "[motion\n").unwrap();
     fs::write(at("zero.toml"), "[schema]\ncomponents = 0").unwrap();
+    fs::write(at("method.toml"), "[map]\nmethod = \"sammon\"").unwrap();
     fs::write(at("start.toml"), "[schema]\nstart = \"random\"").unwrap();
     fs::write(at("wild.toml"), "[motion]\ncoordination = 0.0\nstiffness = 1e6\n[physics]\nduration = 60.0")
         .unwrap();
@@ -301,6 +324,10 @@ fn a_mistake_is_one_line_that_says_what_and_where_and_status_2() {
         ("distance line.npy --levels 1 --out d.npy", "`quantise.levels` is 1, but must be 2 to 256"),
         ("map wide.npy --dims 2 --out m.npy", "square matrix, but it is 2 x 3"),
         ("map line.npy --dims 4 --out m.npy", "at most 1"),
+        ("map line.npy --dims 4 --method smacof --out m.npy", "at most 1"),
+        ("map same.npy --dims 1 --method nonmetric --out m.npy", "all at distance 0"),
+        ("map far.npy --dims 1 --method smacof --out m.npy", "the largest distance is 1e200"),
+        ("map line.npy --dims 1 --settings method.toml --out m.npy", "unknown variant `sammon`"),
         ("map line.npy --dims 0 --out m.npy", "--dims is 0"),
         ("map line.npy --dims 1 --out file/m.npy", "file/m.npy: cannot be written"),
         ("infer flat.npy --out s", "flat.npy: the 3 points span fewer than 2 dimensions"),

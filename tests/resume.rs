@@ -33,8 +33,12 @@ struct Place {
 
 impl Place {
     fn new() -> Self {
+        Self::of(SMALL)
+    }
+
+    fn of(settings: &str) -> Self {
         let folder = tempfile::tempdir().unwrap();
-        fs::write(folder.path().join("small.toml"), SMALL).unwrap();
+        fs::write(folder.path().join("small.toml"), settings).unwrap();
         Self { folder }
     }
 
@@ -210,6 +214,30 @@ fn damaged_and_foreign_parts_are_done_again_with_a_line_that_says_so() {
     // A run that is finished is made anew.
     assert_eq!(place.finish("exp1", "whole"), "");
     same(&place.out("whole"), &expected, "twice");
+}
+
+#[test]
+fn a_map_for_each_dimension_is_taken_up_again() {
+    let place = Place::of(&format!("{SMALL}[map]\nmethod = \"nonmetric\""));
+    assert_eq!(place.finish("exp1", "whole"), "");
+    let expected = files(&place.out("whole"));
+    let map = |d: usize| PathBuf::from(format!("simulation-1/body-map-{d}.npy"));
+    assert!(expected.contains_key(&map(2)) && expected.contains_key(&map(4)), "{:?}", expected.keys());
+    assert!(!expected.contains_key(Path::new("simulation-1/body-map.npy")));
+    let manifest: serde_json::Value = serde_json::from_slice(&expected[Path::new("manifest.json")]).unwrap();
+    let improvements = manifest["bodies"][0]["facts"]["improvements"].as_array().unwrap();
+    assert_eq!(improvements.len(), 2);
+    assert!(improvements.iter().all(|d| d["stress"].as_f64().unwrap() < d["start"].as_f64().unwrap()));
+
+    leave_after(&place, "left", "simulation-1/dpgmm-2.json", "-KILL");
+    let said = place.finish("exp1", "left");
+    assert!(said.contains("going on from") && !said.contains("done again"), "{said}");
+    same(&place.out("left"), &expected, "maps taken up");
+    leave_after(&place, "lost", "simulation-1/dpgmm-2.json", "-KILL");
+    fs::remove_file(place.out("lost").join(map(2))).unwrap();
+    let said = place.finish("exp1", "lost");
+    assert!(said.contains("body-map-2.npy: has changed or is missing; this part is done again"), "{said}");
+    same(&place.out("lost"), &expected, "a map that is missing");
 }
 
 #[test]

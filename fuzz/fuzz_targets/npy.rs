@@ -9,6 +9,7 @@ use bodyschema::quantise::quantise;
 use bodyschema::record::npy;
 use bodyschema::schema::{Model, infer};
 use bodyschema::settings::{Quantise, Scheme, Settings};
+use bodyschema::smacof::{Fit, smacof};
 use bodyschema::streams::stream;
 use bodyschema_fuzz::{accepted, file};
 use indicatif::ProgressBar;
@@ -48,6 +49,11 @@ fn map(distances: &Distances) {
     let Some(scaling) = accepted(ClassicalScaling::new(distances, 2)) else { return };
     for dims in [1, 2] {
         if let Some(body_map) = accepted(scaling.coordinates(dims)) {
+            for fit in [Fit::Metric, Fit::Nonmetric] {
+                let (improved, found) = smacof(distances, body_map.clone(), fit);
+                assert!(improved.coordinates.iter().all(|x| x.is_finite()), "{found:?}");
+                assert!(found.stress <= found.start + 1e-9, "{found:?}");
+            }
             draw(&body_map);
         }
     }
