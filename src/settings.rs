@@ -140,6 +140,8 @@ pub struct Physics {
     pub step: f64,
     /// Simulated time, s.
     pub duration: f64,
+    /// Turns a part may make in a step; beyond, the simulation counts as unstable.
+    pub turn_limit: f64,
 }
 
 /// The tactile sense (equation 25).
@@ -425,6 +427,8 @@ impl Settings {
 
         physical("physics.step", self.physics.step)?;
         positive("physics.duration", self.physics.duration)?;
+        let turns = self.physics.turn_limit;
+        check("physics.turn_limit", turns, (0.001..=1e6).contains(&turns), "0.001 to 1000000")?;
         positive("sense.interval", self.sense.interval)?;
         physical("sense.fluid_density", self.sense.fluid_density)?;
         let ratio = self.sense.interval / self.physics.step;

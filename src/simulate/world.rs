@@ -4,6 +4,7 @@
 //! body after each step. Each world has its own step threading, because two worlds that share ODE's
 //! default one abort when they step at the same time.
 
+use std::f64::consts::TAU;
 use std::ffi::CStr;
 use std::mem::MaybeUninit;
 use std::ptr::null_mut;
@@ -54,6 +55,8 @@ pub struct World {
     joints: Vec<ode::dJointID>,
     step: f64,
     steps: u64,
+    /// Fastest rotation that is not called unstable, rad/s.
+    fastest: f64,
     /// Whether the engine gave up in a step, after which the world may not be touched.
     failed: bool,
 }
@@ -166,6 +169,7 @@ impl World {
                 joints,
                 step: settings.physics.step,
                 steps: 0,
+                fastest: settings.physics.turn_limit * TAU / settings.physics.step,
                 failed: false,
             };
             for joint in 0..world.joints.len() {
@@ -178,7 +182,7 @@ impl World {
     /// Advances the world by one step.
     ///
     /// # Errors
-    /// [`Unstable`] if a part turns by more than half a turn in a step, leaves the range of numbers, or makes
+    /// [`Unstable`] if a part turns by more than `physics.turn_limit` in a step, leaves the range of numbers, or makes
     /// the engine give up. The world is then of no more use.
     pub fn step(&mut self) -> Result<(), Unstable> {
         self.steps += 1;
@@ -192,11 +196,8 @@ impl World {
         }
         for part in 0..self.bodies.len() {
             let (linear, angular) = self.velocity(part);
-            // Beyond half a turn a step, a rotation cannot be told from its opposite; and no real motion
-            // of such bodies comes near a kilometre a second.
-            for (velocity, limit, unit) in
-                [(angular, std::f64::consts::PI / self.step, "rad/s"), (linear, 1e3, "m/s")]
-            {
+            // No real motion of such bodies comes near a kilometre a second.
+            for (velocity, limit, unit) in [(angular, self.fastest, "rad/s"), (linear, 1e3, "m/s")] {
                 let squared: f64 = velocity.iter().map(|x| x * x).sum();
                 if squared.is_nan() || squared >= limit * limit {
                     return Err(unstable(format!("part {part} reached {:.3e} {unit}", squared.sqrt())));

@@ -246,8 +246,10 @@ impl Part<'_> {
 }
 
 fn draw(felt: &FeltBody, settings: &Settings, conditions: &[(usize, Model)], simulation: usize) -> Draws {
-    let dims = conditions.iter().map(|(d, _)| *d).max().expect("there is a condition");
-    let body = map_felt(felt, settings, dims).map_err(|error| error.to_string())?.body;
+    let mut dims: Vec<usize> = conditions.iter().map(|(d, _)| *d).collect();
+    dims.sort_unstable();
+    dims.dedup();
+    let body = map_felt(felt, settings, &dims).map_err(|error| error.to_string())?.body;
     let mut records = Vec::new();
     for &(d, model) in conditions {
         let found = infer_and_score(&body, d, model, settings, simulation, &ProgressBar::hidden());
