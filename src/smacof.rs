@@ -83,7 +83,7 @@ impl<'a> Majorisation<'a> {
 
     /// The Guttman transform, x_i ← Σ_j (d̂_ij / d_ij)(x_i − x_j) / n, and then the disparities of the new map.
     ///
-    /// Points that coincide do not move each other, as in Borg & Groenen (2005), equation 8.25.
+    /// Points that coincide do not move each other, as Borg & Groenen (2005, chapter 8) have it.
     pub fn step(&mut self) {
         let (n, dims) = (self.map.points(), self.map.dims);
         let (old, disparities) = (&self.map.coordinates, self.disparities());
