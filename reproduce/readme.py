@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
-"""Puts the claims and two figures of finished runs into the README: reproduce/readme.py [RESULTS]
+"""Puts what finished runs found into the repository: reproduce/readme.py [RESULTS]
 
 RESULTS holds exp1 and exp2, and is results/ if not given. The README's text between <!-- NAME --> and
-<!-- /NAME --> becomes NAME's claims.md.
+<!-- /NAME --> becomes NAME's claims.md, and two figures go beside it. Where RESULTS also holds search or sensitivity,
+their tables and pictures go to reproduce/shown/, and the study's page becomes DEVIATIONS.md.
 """
 
 import pathlib
@@ -24,3 +25,19 @@ for name, figure in [("exp1", "fig10b-tree"), ("exp2", "fig11b-tree")]:
     assert found == 1, f"README.md has no marks of {name}"
     shutil.copy(results / name / "figures" / f"{figure}.svg", shown / f"{figure}.svg")
 readme.write_text(text)
+
+search = results / "search"
+if search.exists():
+    (shown / "search").mkdir(exist_ok=True)
+    for name in ["search.md", "scores.csv", "credits.csv", "best.toml"]:
+        shutil.copy(search / name, shown / "search" / name)
+
+study = results / "sensitivity"
+if study.exists():
+    (shown / "sensitivity").mkdir(exist_ok=True)
+    for path in [study / "sensitivity.csv", *(study / "figures").glob("*.svg")]:
+        shutil.copy(path, shown / "sensitivity" / path.name)
+    page = (study / "DEVIATIONS.md").read_text()
+    page = page.replace("](figures/", "](reproduce/shown/sensitivity/")
+    page = page.replace("](sensitivity.csv)", "](reproduce/shown/sensitivity/sensitivity.csv)")
+    (root / "DEVIATIONS.md").write_text(page)

@@ -70,8 +70,12 @@ impl Display for Finding {
 /// What a manifest says that can be verified.
 #[derive(Deserialize)]
 struct Manifest {
+    /// Of an experiment; a study has a design among its outputs.
+    #[serde(default)]
     settings: Value,
     seed: Value,
+    /// Of an experiment, too.
+    #[serde(default)]
     experiment: Value,
     outputs: Vec<Output>,
 }

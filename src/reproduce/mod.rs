@@ -22,6 +22,7 @@ use crate::schema::Model;
 use crate::settings::Settings;
 use crate::simulate::simulate;
 use crate::streams::stream;
+use crate::study::is_held_out;
 
 /// An experiment that could not be finished.
 #[derive(Debug, thiserror::Error)]
@@ -226,12 +227,16 @@ pub fn preamble(run: &Run) -> String {
         }
     };
     let caution = if run.quick { " Quick run: its numbers are no replication." } else { "" };
+    let seed = match is_held_out(experiment.seed) {
+        true => "held out: neither the search for the default settings nor the study of them used it",
+        false => "used by the search for the default settings or the study of them",
+    };
     let scope = match experiment.simulations {
         1 => "Intervals are over the chains of this one simulation; another can differ by more.",
         _ => "Intervals are over simulations (bootstrap).",
     };
     format!(
-        "{what}; {} simulation(s), {} chains of {} sweeps for each condition, seed {}, revision {}.{caution} {scope} \
+        "{what}; {} simulation(s), {} chains of {} sweeps for each condition, seed {} ({seed}), revision {}.{caution} {scope} \
          Rows marked extension count, of each simulation, only the draw of highest log posterior, which the paper does \
          not.",
         experiment.simulations,

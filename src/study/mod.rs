@@ -48,6 +48,14 @@ impl StudyError {
     }
 }
 
+/// Whether neither the search for the default nor the study of its settings has used a master seed.
+pub fn is_held_out(seed: u64) -> bool {
+    let search = search::Design::parse(search::DESIGN, "reproduce/search.toml").map(|design| design.seed);
+    let study = sensitivity::Design::parse(sensitivity::DESIGN, "reproduce/sensitivity.toml");
+    let used = [search, study.map(|design| design.seed)];
+    used.into_iter().all(|used| used.expect("the repository's designs can be read; a test checks it") != seed)
+}
+
 /// Writes manifest.json of a study: what made its tables, and their hashes.
 fn write_manifest(out: &Path, study: &str, seed: u64, tables: &[&str]) -> Result<(), FileError> {
     let mut manifest = serde_json::json!({ "study": study, "seed": seed });
@@ -257,3 +265,6 @@ fn draw(felt: &FeltBody, settings: &Settings, conditions: &[(usize, Model)], sim
     }
     Ok(records)
 }
+
+#[cfg(test)]
+mod tests;

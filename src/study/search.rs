@@ -28,7 +28,7 @@ pub const DESIGN: &str = include_str!("../../reproduce/search.toml");
 #[serde(deny_unknown_fields)]
 pub struct Design {
     /// Master seed of every candidate and of the draws of candidates: a calibration seed.
-    seed: u64,
+    pub seed: u64,
     /// Number of candidates drawn at random.
     candidates: usize,
     /// The terms of the score.
@@ -175,6 +175,16 @@ impl Design {
         Ok(settings)
     }
 
+    /// Whether every candidate can be tried in every round.
+    ///
+    /// # Errors
+    /// If the settings of one cannot be used.
+    pub fn check(&self) -> Result<(), StudyError> {
+        let candidates = self.all_candidates();
+        let mut pairs = self.round.iter().flat_map(|round| candidates.iter().map(move |one| (round, one)));
+        pairs.try_for_each(|(round, candidate)| Ok(self.settings(round, candidate).map(drop)?))
+    }
+
     /// A candidate's score: weighted credit of all terms; 0 if anything of it failed.
     fn judge(&self, start: Start, settings: &Settings, outcome: &Outcome) -> Tried {
         let of = |experiment| {
@@ -227,6 +237,8 @@ impl Term {
 /// # Errors
 /// If a candidate's settings cannot be used, or a file cannot be written.
 pub fn search(design: &Design, out: &Path) -> Result<String, StudyError> {
+    // Before hours are spent on those that come first.
+    design.check()?;
     let mut field = design.all_candidates();
     let (mut scores, mut credits, mut rounds) = (Vec::new(), Vec::new(), Vec::new());
     for (at, round) in design.round.iter().enumerate() {
@@ -425,4 +437,30 @@ pub fn flat(table: &Table) -> Vec<String> {
         }
     }
     all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::statistics::Estimate;
+
+    #[test]
+    fn credit_is_full_within_the_range_and_falls_to_nothing_outside() {
+        let claim = claims::published().into_iter().find(|claim| claim.id == "tree-accuracy").unwrap();
+        let (low, high) = claim.accept.unwrap();
+        let term = Term { claim: claim.id.clone(), experiment: Experiment::Exp1, weight: 3.0, slack: 0.2 };
+        let credit = |value: Option<f64>| {
+            let reproduced = Estimate::bare(value, 10);
+            let verdict = Verdict::NotTestable;
+            let judged =
+                Judged { claim: claim.clone(), reproduced, place: String::new(), verdict, best: None };
+            term.credit(&judged)
+        };
+        assert_eq!([low, 0.5 * (low + high), high].map(|value| credit(Some(value))), [1.0; 3]);
+        assert!(
+            (credit(Some(low - 0.05)) - 0.75).abs() < 1e-12
+                && (credit(Some(high + 0.05)) - 0.75).abs() < 1e-12
+        );
+        assert_eq!([credit(Some(low - 0.3)), credit(None)], [0.0; 2]);
+    }
 }

@@ -32,7 +32,7 @@ const TABLE: &str = "sensitivity.csv";
 #[serde(deny_unknown_fields)]
 pub struct Design {
     /// Master seed of all simulations.
-    seed: u64,
+    pub seed: u64,
     /// What every configuration has instead of `reproduce/paper.toml`'s values: how much is simulated and drawn.
     settings: Table,
     /// The open settings.
@@ -200,6 +200,20 @@ impl Design {
         Ok(self.configure(DEFAULT.to_owned(), &Table::new())?.settings)
     }
 
+    /// The default, and each value of each part under the name `part: value`.
+    ///
+    /// # Errors
+    /// If the settings of one cannot be used.
+    pub fn configurations(&self) -> Result<Vec<Configuration>, StudyError> {
+        let mut all = vec![Configuration { name: DEFAULT.to_owned(), settings: self.defaults()? }];
+        for part in &self.part {
+            for value in &part.values {
+                all.push(self.configure(format!("{}: {}", part.name, label(value)), value)?);
+            }
+        }
+        Ok(all)
+    }
+
     /// How each configuration is run, in words.
     pub fn summary(&self) -> String {
         format!("{}, seed {}", flat(&self.settings).join(", "), self.seed)
@@ -224,12 +238,7 @@ pub fn default_value(settings: &Settings, key: &str) -> Option<String> {
 /// # Errors
 /// If a value's settings cannot be used, or a file cannot be written.
 pub fn study(design: &Design, text: &str, out: &Path) -> Result<(), StudyError> {
-    let mut configurations = vec![Configuration { name: DEFAULT.to_owned(), settings: design.defaults()? }];
-    for part in &design.part {
-        for value in &part.values {
-            configurations.push(design.configure(format!("{}: {}", part.name, label(value)), value)?);
-        }
-    }
+    let configurations = design.configurations()?;
     let outcomes = run(&configurations, out, "sensitivity")?;
     let mut of_default = None;
     let mut rows = Vec::new();
