@@ -10,7 +10,7 @@ use std::path::Path;
 use bodyschema::evaluate::score;
 use bodyschema::record::tables::write_rows;
 use bodyschema::schema::{Model, infer};
-use bodyschema::settings::Settings;
+use bodyschema::settings::{EdgeWeight, Settings};
 use bodyschema::statistics::mean;
 use bodyschema::streams::stream;
 use indicatif::ProgressBar;
@@ -43,6 +43,7 @@ struct Row {
 fn condition(dimension: usize, separation: f64) -> Result<Row, Box<dyn Error>> {
     let mut schema = Settings::paper().schema;
     (schema.chains, schema.sweeps) = (8, 300);
+    schema.edge_weight = EdgeWeight::Pairwise;
     let (mut partitions, mut trees) = (Vec::new(), Vec::new());
     let mut identifiable = 0;
     for at in 0..BODIES {

@@ -9,7 +9,8 @@
 //! in other ways, and the truth says how well ([`evaluate`]). [`pipeline`] composes these stages;
 //! [`reproduce`] runs an experiment of them and sums it up for its [`conditions`], from which [`figures`] and
 //! [`claims`] are made. [`plot`] draws the figures and [`report`] shows all of it. All [`settings`] stand in
-//! `reproduce/paper.toml`, [`record`] reads and writes every file, and [`verify`] compares finished results.
+//! `reproduce/paper.toml`, and a [`study`] says where they come from and what others would do; [`record`] reads and
+//! writes every file, and [`verify`] compares finished results.
 
 pub mod agent;
 pub mod baselines;

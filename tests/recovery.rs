@@ -15,6 +15,8 @@ use indicatif::ProgressBar;
 fn recovered(dims: usize, separation: f64, judge: impl Fn(Truth, usize) -> Truth) -> (usize, usize, usize) {
     let mut schema = Settings::paper().schema;
     (schema.chains, schema.sweeps) = (6, 150);
+    // The joints of equation 21; what the other weights do is tested below.
+    schema.edge_weight = EdgeWeight::Pairwise;
     let mut counts = (0, 0, 0);
     for at in 0..12 {
         let body = synthetic::body(dims, separation, &mut stream(1, 1, "synthetic", at));

@@ -35,14 +35,14 @@ enum Range {
 
 use Range::{Numbers, Probabilities, Real, Whole, Word};
 
-const SETTINGS: [(&str, Range); 40] = [
+const SETTINGS: [(&str, Range); 41] = [
     ("agent.morphology", Word(&["chain", "star", "tee", "y"])),
     ("agent.part_length", Real(1e-3, 1e3)),
-    ("agent.part_radius", Real(1e-3, 5.0)),
+    ("agent.part_radius", Real(1e-3, 3.0)),
     ("agent.gap", Real(0.0, 1e3)),
     ("agent.density", Real(1e-6, 1e6)),
-    ("skin.around", Whole(1, 571)),
-    ("skin.along", Whole(1, 166)),
+    ("skin.around", Whole(1, 285)),
+    ("skin.along", Whole(1, 333)),
     ("skin.caps", Whole(0, 3832)),
     ("motion.coordination", Real(0.0, 1.0)),
     ("motion.epoch", Whole(1, i64::MAX as u64)),
@@ -52,6 +52,7 @@ const SETTINGS: [(&str, Range); 40] = [
     ("motion.error", Word(&["raw", "shortest"])),
     ("physics.step", Real(1e-5, 0.1)),
     ("physics.duration", Real(0.1, 238_095.2)),
+    ("physics.turn_limit", Real(1e-3, 1e6)),
     ("sense.interval", Real(0.01, 10_000.0)),
     ("sense.fluid_density", Real(1e-6, 1e6)),
     ("quantise.scheme", Word(&["per-sensor", "pooled", "equal-width"])),

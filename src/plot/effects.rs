@@ -1,8 +1,10 @@
 //! Values of one setting → a picture of what each gives, a line a value and a panel a result.
 
+use std::ops::Range;
+
 use plotters::style::WHITE;
 
-use super::axes::{Axis, Panel, Rect, X_BARE, around, sparse};
+use super::axes::{Axis, Panel, Rect, X_BARE, around};
 use super::canvas::{
     Anchor, BLUE, Drawn, FONT, GREY, INK, Look, SMALL, Shape, Trouble, VERMILLION, WIDTH, paint, stroke,
     text_width,
@@ -66,10 +68,12 @@ pub fn draw(columns: &[Column], lines: &[Line]) -> Result<String, Trouble> {
         }
         for (at, column) in columns.iter().enumerate() {
             let cells: Vec<Cell> = lines.iter().map(|line| line.cells.get(at).copied().flatten()).collect();
-            let range =
-                if column.share { -0.04..1.04 } else { around(ends(&cells).chain(column.published), 0.08) };
-            let axis = Axis::new("", range.clone(), 2);
-            let axis = Axis { ticks: sparse(&axis.ticks, 0.3 * (range.end - range.start)), ..axis };
+            let range = if column.share { -0.04..1.04 } else { whole(ends(&cells)) };
+            // Room for two labels: the ends of the scale, or the whole numbers next to them.
+            let mut ticks = vec![range.start.ceil(), range.end.floor()];
+            ticks.retain(|tick| range.contains(tick));
+            ticks.dedup();
+            let axis = Axis { ticks, ..Axis::new("", range.clone(), 2) };
             let bare = Axis { ticks: Vec::new(), ..Axis::new("", 0.0..1.0, 2) };
             let left = LABELS + at as f64 * wide + GAP / 2.0;
             let outer = Rect { left, top, width: wide - GAP, height: inside + X_BARE };
@@ -117,6 +121,12 @@ pub fn draw(columns: &[Column], lines: &[Line]) -> Result<String, Trouble> {
         }
         Drawn::Ok(())
     })
+}
+
+/// Whole numbers around all values, and some room.
+fn whole(values: impl Iterator<Item = f64>) -> Range<f64> {
+    let range = around(values, 0.0);
+    if range.start.is_finite() { range.start.floor() - 0.2..range.end.ceil() + 0.2 } else { -0.2..1.2 }
 }
 
 /// All values and ends of intervals.

@@ -127,8 +127,8 @@ pub fn columns() -> [Column; 4] {
     [
         Column { title: "number\nof parts", share: false, published: None },
         Column { title: "adjusted\nRand index", share: true, published: None },
-        Column { title: "tree accuracy,\nDPGMM-LJ", share: true, published },
-        Column { title: "the same,\nDPGMM + Prim", share: true, published: None },
+        Column { title: "tree right,\nDPGMM-LJ", share: true, published },
+        Column { title: "tree right,\n+ Prim", share: true, published: None },
     ]
 }
 
