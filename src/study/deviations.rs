@@ -180,7 +180,8 @@ pub fn page(design: &Design, rows: &[Row], revision: &str) -> String {
         "Made by `reproduce/sensitivity.sh` (revision {revision}): {}; all else as in \
          [reproduce/paper.toml](reproduce/paper.toml). Numbers are at p = {p} and d = {d} unless a column says \
          otherwise. Intervals are 95 % intervals over simulations (bootstrap); *change* is the difference from the \
-         default, paired by simulation. A rate is over the eligible draws: five parts and an ARI of 1. All numbers, of \
+         default, paired by simulation; in the pictures the orange line is the default, and the dashed one the \
+         published rate. A rate is over the eligible draws: five parts and an ARI of 1. All numbers, of \
          every condition and measure: [sensitivity.csv](sensitivity.csv). How the default was chosen: \
          [search.md](reproduce/shown/search/search.md).\n",
         design.summary(),
