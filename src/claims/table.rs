@@ -75,7 +75,7 @@ impl Row {
             simulations: estimate.simulations,
             lowest,
             highest,
-            accepted: claim.accept.map_or(String::new(), |(low, high)| format!("{low}..{high}")),
+            accepted: accepted(claim),
             verdict: verdict.to_owned(),
             found: found.to_owned(),
         }
@@ -197,7 +197,13 @@ pub fn comparison(judged: &Judged) -> Option<String> {
     ))
 }
 
-fn number(value: Option<f64>) -> String {
+/// The range of a claim as CSV files have it, `low..high`.
+pub fn accepted(claim: &Claim) -> String {
+    claim.accept.map_or(String::new(), |(low, high)| format!("{low}..{high}"))
+}
+
+/// A value for people, with three decimals at most.
+pub fn number(value: Option<f64>) -> String {
     value.map_or("none".to_owned(), |value| format!("{}", (value * 1e3).round() / 1e3))
 }
 

@@ -52,21 +52,25 @@ impl Survival {
 }
 
 /// Rows of a study, with where its main condition is.
-struct Table<'a> {
+pub struct Table<'a> {
+    design: &'a Design,
     rows: &'a [Row],
     coordination: f64,
     dimension: usize,
+    /// The published value, in the paper's words.
+    published: String,
     accept: (f64, f64),
 }
 
 impl<'a> Table<'a> {
     /// The main condition is the p of every configuration, and the d of its experiment 2.
-    fn new(design: &Design, rows: &'a [Row]) -> Self {
+    pub fn new(design: &'a Design, rows: &'a [Row]) -> Self {
         let headline = claims::published().into_iter().find(|claim| claim.id == HEADLINE);
-        let accept = headline.and_then(|claim| claim.accept).expect("the headline has a range");
+        let headline = headline.expect("the headline is published");
+        let accept = headline.accept.expect("the headline has a range");
         let settings = design.defaults().expect("a design has been checked");
         let (coordination, dimension) = (settings.motion.coordination, settings.experiment.dimension);
-        Self { rows, coordination, dimension, accept }
+        Self { design, rows, coordination, dimension, published: headline.published, accept }
     }
 
     /// The values of a part, in their order.
@@ -132,147 +136,155 @@ pub fn columns() -> [Column; 4] {
     ]
 }
 
-/// What the picture of a part shows: the default, then each value, at the main condition.
-pub fn lines(design: &Design, rows: &[Row], part: &str) -> Vec<Line> {
-    let table = Table::new(design, rows);
-    let line = |label: &str, part: &str, value: &str| {
-        let cell = |model, measure| {
-            let row = table.main(part, value, model, measure)?;
-            Some((row.estimate?, row.low.zip(row.high)))
+impl Table<'_> {
+    /// What the picture of a part shows: the default, then each value, at the main condition.
+    pub fn lines(&self, part: &str) -> Vec<Line> {
+        let line = |label: &str, part: &str, value: &str| {
+            let cell = |model, measure| {
+                let row = self.main(part, value, model, measure)?;
+                Some((row.estimate?, row.low.zip(row.high)))
+            };
+            let measures = [
+                (Model::DpgmmLj, Measure::Parts),
+                (Model::DpgmmLj, Measure::Ari),
+                (Model::DpgmmLj, Measure::Tree),
+                (Model::Dpgmm, Measure::Tree),
+            ];
+            let cells = measures.into_iter().map(|(model, measure)| cell(model, measure)).collect();
+            Line { label: label.to_owned(), cells }
         };
-        let measures = [
-            (Model::DpgmmLj, Measure::Parts),
-            (Model::DpgmmLj, Measure::Ari),
-            (Model::DpgmmLj, Measure::Tree),
-            (Model::Dpgmm, Measure::Tree),
-        ];
-        let cells = measures.into_iter().map(|(model, measure)| cell(model, measure)).collect();
-        Line { label: label.to_owned(), cells }
-    };
-    let values = table.values(part);
-    std::iter::once(line(DEFAULT, DEFAULT, ""))
-        .chain(values.into_iter().map(|value| line(value, part, value)))
-        .collect()
-}
+        let values = self.values(part);
+        std::iter::once(line(DEFAULT, DEFAULT, ""))
+            .chain(values.into_iter().map(|value| line(value, part, value)))
+            .collect()
+    }
 
-/// The page.
-pub fn page(design: &Design, rows: &[Row], revision: &str) -> String {
-    let table = Table::new(design, rows);
-    let paper = Settings::paper();
-    let mut text = String::new();
-    let mut line = |line: &str| writeln!(text, "{line}").expect("a text takes all");
-    let (low, high) = table.accept;
-    let (p, d) = (table.coordination, table.dimension);
-    let all: Vec<Survival> = design
-        .part
-        .iter()
-        .flat_map(|part| table.values(&part.name).into_iter().map(|value| table.survival(&part.name, value)))
-        .collect();
-    line("# What the paper leaves open, and how much it matters\n");
-    line(&format!(
-        "Would the published tree accuracy, 84.6 %, survive another reasonable choice? Each setting that the paper does \
+    /// The page.
+    pub fn page(&self, revision: &str) -> String {
+        let Self { design, published, .. } = self;
+        let paper = Settings::paper();
+        let mut text = String::new();
+        let mut line = |line: &str| writeln!(text, "{line}").expect("a text takes all");
+        let (low, high) = self.accept;
+        let (p, d) = (self.coordination, self.dimension);
+        let all: Vec<Survival> = design
+            .part
+            .iter()
+            .flat_map(|part| {
+                self.values(&part.name).into_iter().map(|value| self.survival(&part.name, value))
+            })
+            .collect();
+        line("# What the paper leaves open, and how much it matters\n");
+        line(&format!(
+            "Would the published tree accuracy, {published}, survive another reasonable choice? Each setting that the paper does \
          not give is varied here around the default, one at a time and in pairs, all on the same simulations. For {} \
          other choices: {}.\n",
-        all.len(),
-        counts(&all)
-    ));
-    line(&format!(
-        "Made by `reproduce/sensitivity.sh` (revision {revision}): {}; all else as in \
+            all.len(),
+            counts(&all)
+        ));
+        line(&format!(
+            "Made by `reproduce/sensitivity.sh` (revision {revision}): {}; all else as in \
          [reproduce/paper.toml](reproduce/paper.toml). Numbers are at p = {p} and d = {d} unless a column says \
          otherwise. Intervals are 95 % intervals over simulations (bootstrap); *change* is the difference from the \
          default, paired by simulation; in the pictures the orange line is the default, and the dashed one the \
          published rate. A rate is over the eligible draws: five parts and an ARI of 1. All numbers, of \
          every condition and measure: [sensitivity.csv](sensitivity.csv). How the default was chosen: \
          [search.md](reproduce/shown/search/search.md).\n",
-        design.summary(),
-    ));
-    line(&format!(
-        "**yes**: the rate lies between {:.1} and {:.1} %, the range that counts as reproduced \
+            design.summary(),
+        ));
+        line(&format!(
+            "**yes**: the rate lies between {:.1} and {:.1} %, the range that counts as reproduced \
          ([published.toml](reproduce/published.toml)); **perhaps**: it does not, but its interval reaches that range; \
          **no**: the whole interval lies beyond, or there is nothing to count.\n",
-        100.0 * low,
-        100.0 * high
-    ));
-    let default = table.survival(DEFAULT, "");
-    line(&format!(
-        "With the default itself: {} ({}).\n",
-        cell(table.main(DEFAULT, "", Model::DpgmmLj, Measure::Tree), true),
-        default.name()
-    ));
-    line(
-        "| setting | the paper says | we chose | why | tree accuracy with other values | does 84.6 % survive? |",
-    );
-    line("|---|---|---|---|---|---|");
-    for part in &design.part {
-        let values = table.values(&part.name);
-        let survivals: Vec<Survival> = values.iter().map(|value| table.survival(&part.name, value)).collect();
-        let rates = values.iter().filter_map(|value| {
-            table.main(&part.name, value, Model::DpgmmLj, Measure::Tree).and_then(|row| row.estimate)
-        });
-        let (least, most) =
-            rates.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), rate| (a.min(rate), b.max(rate)));
-        let span = if least > most {
-            "none".to_owned()
-        } else if least == most {
-            percent(least)
-        } else {
-            format!("{} to {}", percent(least), percent(most))
-        };
-        line(&format!(
-            "| [{}](#{}) | {} | {} | {} | {span} | {} |",
-            part.title,
-            part.name,
-            part.paper,
-            chosen(part, &paper),
-            part.why,
-            counts(&survivals)
+            100.0 * low,
+            100.0 * high
         ));
-    }
-    let others = table.others();
-    for part in &design.part {
-        line(&format!("\n<a id=\"{}\"></a>\n\n## {}\n", part.name, part.title));
-        line(&format!("![{}](figures/{}.svg)\n", part.title, part.name));
-        let named: Vec<String> = others
-            .iter()
-            .map(|&(other_p, other_d)| match (other_p == p, other_d == d) {
-                (true, _) => format!("tree at d = {other_d}"),
-                (_, true) => format!("tree at p = {other_p}"),
-                _ => format!("tree at p = {other_p}, d = {other_d}"),
-            })
-            .collect();
+        let default = self.survival(DEFAULT, "");
         line(&format!(
-            "| value | parts | ARI | eligible draws | tree accuracy | change | survives? | DPGMM + Prim | best draw | {} |",
-            named.join(" | ")
+            "With the default itself: {} ({}).\n",
+            cell(self.main(DEFAULT, "", Model::DpgmmLj, Measure::Tree), true),
+            default.name()
         ));
-        line(&format!("|{}", "---|".repeat(9 + named.len())));
-        let values = table.values(&part.name).into_iter().map(|value| (part.name.as_str(), value));
-        for (name, value) in std::iter::once((DEFAULT, "")).chain(values) {
-            let main = |measure| table.main(name, value, Model::DpgmmLj, measure);
-            let tree = main(Measure::Tree);
-            let change = tree.filter(|_| name != DEFAULT).map_or(String::new(), change);
-            let failed = main(Measure::Parts).filter(|row| row.failed > 0);
-            let failed = failed
-                .map_or(String::new(), |row| format!("; {} simulations failed: {}", row.failed, row.failure));
-            let elsewhere: Vec<String> = others
-                .iter()
-                .map(|&at| cell(table.at(name, value, at, Model::DpgmmLj, Measure::Tree), true))
-                .collect();
-            let label =
-                if name == DEFAULT { format!("default: {}", chosen(part, &paper)) } else { value.to_owned() };
+        line(&format!(
+            "| setting | the paper says | we chose | why | tree accuracy with other values | does {published} survive? |"
+        ));
+        line("|---|---|---|---|---|---|");
+        for part in &design.part {
+            let values = self.values(&part.name);
+            let survivals: Vec<Survival> =
+                values.iter().map(|value| self.survival(&part.name, value)).collect();
+            let rates = values.iter().filter_map(|value| {
+                self.main(&part.name, value, Model::DpgmmLj, Measure::Tree).and_then(|row| row.estimate)
+            });
+            let (least, most) =
+                rates.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), rate| (a.min(rate), b.max(rate)));
+            let span = if least > most {
+                "none".to_owned()
+            } else if least == most {
+                percent(least)
+            } else {
+                format!("{} to {}", percent(least), percent(most))
+            };
             line(&format!(
-                "| {label}{failed} | {} | {} | {} | {} | {change} | {} | {} | {} | {} |",
-                cell(main(Measure::Parts), false),
-                cell(main(Measure::Ari), false),
-                cell(main(Measure::Eligible), true),
-                cell(tree, true),
-                table.survival(name, value).name(),
-                cell(table.main(name, value, Model::Dpgmm, Measure::Tree), true),
-                cell(main(Measure::BestTree), true),
-                elsewhere.join(" | ")
+                "| [{}](#{}) | {} | {} | {} | {span} | {} |",
+                part.title,
+                part.name,
+                part.paper,
+                chosen(part, &paper),
+                part.why,
+                counts(&survivals)
             ));
         }
+        let others = self.others();
+        for part in &design.part {
+            line(&format!("\n<a id=\"{}\"></a>\n\n## {}\n", part.name, part.title));
+            line(&format!("![{}](figures/{}.svg)\n", part.title, part.name));
+            let named: Vec<String> = others
+                .iter()
+                .map(|&(other_p, other_d)| match (other_p == p, other_d == d) {
+                    (true, _) => format!("tree at d = {other_d}"),
+                    (_, true) => format!("tree at p = {other_p}"),
+                    _ => format!("tree at p = {other_p}, d = {other_d}"),
+                })
+                .collect();
+            line(&format!(
+                "| value | parts | ARI | eligible draws | tree accuracy | change | survives? | DPGMM + Prim | best draw | {} |",
+                named.join(" | ")
+            ));
+            line(&format!("|{}", "---|".repeat(9 + named.len())));
+            let values = self.values(&part.name).into_iter().map(|value| (part.name.as_str(), value));
+            for (name, value) in std::iter::once((DEFAULT, "")).chain(values) {
+                let main = |measure| self.main(name, value, Model::DpgmmLj, measure);
+                let tree = main(Measure::Tree);
+                let change = tree.filter(|_| name != DEFAULT).map_or(String::new(), change);
+                let failed = main(Measure::Parts).filter(|row| row.failed > 0);
+                let failed = failed.map_or(String::new(), |row| {
+                    format!("; {} simulations failed: {}", row.failed, row.failure)
+                });
+                let elsewhere: Vec<String> = others
+                    .iter()
+                    .map(|&at| cell(self.at(name, value, at, Model::DpgmmLj, Measure::Tree), true))
+                    .collect();
+                let label = if name == DEFAULT {
+                    format!("default: {}", chosen(part, &paper))
+                } else {
+                    value.to_owned()
+                };
+                line(&format!(
+                    "| {label}{failed} | {} | {} | {} | {} | {change} | {} | {} | {} | {} |",
+                    cell(main(Measure::Parts), false),
+                    cell(main(Measure::Ari), false),
+                    cell(main(Measure::Eligible), true),
+                    cell(tree, true),
+                    self.survival(name, value).name(),
+                    cell(self.main(name, value, Model::Dpgmm, Measure::Tree), true),
+                    cell(main(Measure::BestTree), true),
+                    elsewhere.join(" | ")
+                ));
+            }
+        }
+        text
     }
-    text
 }
 
 fn chosen(part: &Part, paper: &Settings) -> String {

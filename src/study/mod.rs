@@ -12,7 +12,6 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use indicatif::ProgressBar;
-use serde::{Deserialize, Serialize};
 
 use crate::conditions::Conditions;
 use crate::pipeline::{FeltBody, Record, feel, infer_and_score, map_felt};
@@ -65,16 +64,6 @@ fn write_manifest(out: &Path, study: &str, seed: u64, tables: &[&str]) -> Result
     write_json(&out.join("manifest.json"), &manifest)
 }
 
-/// Settings to try, under a name.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Configuration {
-    /// What tables call it.
-    pub name: String,
-    /// All of its settings. It runs at its own p with both mixtures at each of `experiment.dimensions`, and at
-    /// the other `experiment.coordinations` with the DPGMM-LJ at `experiment.dimension`.
-    pub settings: Settings,
-}
-
 /// What a configuration gave in its `experiment.simulations` simulations.
 #[derive(Debug, Clone)]
 pub struct Outcome {
@@ -85,20 +74,19 @@ pub struct Outcome {
 }
 
 /// A part that could not be done.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Failure {
     /// p.
     pub coordination: f64,
-    /// Simulation, from 1.
-    pub simulation: usize,
     /// Why.
     pub reason: String,
 }
 
 impl Outcome {
-    /// The draws by condition, with intervals over simulations.
-    pub fn conditions(&self, settings: &Settings) -> Conditions {
-        Conditions::new(self.records.clone(), settings.experiment.simulations, settings.experiment.seed)
+    /// The draws that `counts` keeps, by condition, with intervals over simulations.
+    pub fn conditions(&self, settings: &Settings, counts: impl Fn(&Record) -> bool) -> Conditions {
+        let records = self.records.iter().copied().filter(counts).collect();
+        Conditions::new(records, settings.experiment.simulations, settings.experiment.seed)
     }
 }
 
@@ -114,7 +102,8 @@ struct Part<'a> {
 /// A part's draws, or why there are none.
 type Draws = Result<Vec<Record>, String>;
 
-/// Runs all configurations. Parts that an earlier run finished are taken from `out`/checkpoints, where they
+/// Runs all configurations: each at its own p with both mixtures at each of `experiment.dimensions`, and at the other
+/// `experiment.coordinations` with the DPGMM-LJ at `experiment.dimension`. Parts that an earlier run finished are taken from `out`/checkpoints, where they
 /// stay: a part is the same in every round of a search, and in every study of the same program.
 ///
 /// Works on as many parts at once as there are threads; each takes as much memory as the pressures of one
@@ -122,12 +111,12 @@ type Draws = Result<Vec<Record>, String>;
 ///
 /// # Errors
 /// If a checkpoint cannot be written. A configuration that fails is an outcome.
-pub fn run(configurations: &[Configuration], out: &Path, name: &str) -> Result<Vec<Outcome>, FileError> {
+pub fn run(configurations: &[Settings], out: &Path, name: &str) -> Result<Vec<Outcome>, FileError> {
     let checkpoints = Checkpoints::new(out, &"study");
     let movements = by_movement(configurations);
     let parts = movements.iter().map(Vec::len).sum::<usize>();
     let bar = progress(parts as u64, name.to_owned());
-    let found: Mutex<Vec<(usize, Failure, Draws)>> = Mutex::new(Vec::with_capacity(parts));
+    let found: Mutex<Vec<(&Part, Draws)>> = Mutex::new(Vec::with_capacity(parts));
     let trouble: Mutex<Option<FileError>> = Mutex::new(None);
     let next = AtomicUsize::new(0);
     // Not by the pool's threads: one that waits for its own work would begin another movement meanwhile, and
@@ -153,26 +142,26 @@ pub fn run(configurations: &[Configuration], out: &Path, name: &str) -> Result<V
     }
     let mut found = found.into_inner().expect("no worker panics");
     // Workers finish in any order.
-    found.sort_by(|(a, first, _), (b, second, _)| {
-        a.cmp(b)
-            .then(first.coordination.total_cmp(&second.coordination))
-            .then(first.simulation.cmp(&second.simulation))
+    found.sort_by(|(a, _), (b, _)| {
+        (a.configuration.cmp(&b.configuration))
+            .then(a.coordination.total_cmp(&b.coordination))
+            .then(a.simulation.cmp(&b.simulation))
     });
     let mut outcomes = vec![Outcome { records: Vec::new(), failures: Vec::new() }; configurations.len()];
-    for (configuration, place, draws) in found {
+    for (&Part { configuration, coordination, .. }, draws) in found {
         match draws {
             Ok(draws) => outcomes[configuration].records.extend(draws),
-            Err(reason) => outcomes[configuration].failures.push(Failure { reason, ..place }),
+            Err(reason) => outcomes[configuration].failures.push(Failure { coordination, reason }),
         }
     }
     Ok(outcomes)
 }
 
 /// All parts, those together that need the same pressures.
-fn by_movement(configurations: &[Configuration]) -> Vec<Vec<Part<'_>>> {
+fn by_movement(configurations: &[Settings]) -> Vec<Vec<Part<'_>>> {
     let mut movements: Vec<Vec<Part>> = Vec::new();
     let mut places: HashMap<String, usize> = HashMap::new();
-    for (configuration, Configuration { settings, .. }) in configurations.iter().enumerate() {
+    for (configuration, settings) in configurations.iter().enumerate() {
         for simulation in 1..=settings.experiment.simulations {
             for coordination in coordinations(settings) {
                 let Settings { agent, skin, motion, physics, sense, experiment, .. } = settings;
@@ -200,15 +189,15 @@ fn coordinations(settings: &Settings) -> Vec<f64> {
 }
 
 /// Parts of one movement, which is simulated if any of them is not finished.
-fn follow(
-    parts: &[Part],
+fn follow<'a>(
+    parts: &'a [Part],
     checkpoints: &Checkpoints,
     bar: &ProgressBar,
-) -> Result<Vec<(usize, Failure, Draws)>, FileError> {
+) -> Result<Vec<(&'a Part<'a>, Draws)>, FileError> {
     let mut felt: Option<Result<FeltBody, String>> = None;
     let mut found = Vec::new();
     for part in parts {
-        let &Part { configuration, coordination, simulation, .. } = part;
+        let simulation = part.simulation;
         let (settings, conditions) = part.work();
         let name = serde_json::to_string(&(&settings, &conditions, simulation)).expect("plain data");
         let name = format!("parts/{}", hash(&name));
@@ -227,7 +216,7 @@ fn follow(
             }
         };
         bar.inc(1);
-        found.push((configuration, Failure { coordination, simulation, reason: String::new() }, draws));
+        found.push((part, draws));
     }
     Ok(found)
 }

@@ -12,8 +12,8 @@ use rand::RngExt;
 use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
 
-use super::{Configuration, Outcome, StudyError, run, write_manifest};
-use crate::claims::{self, Claim, Evidence, Judged, Verdict};
+use super::{Outcome, StudyError, run, write_manifest};
+use crate::claims::{self, Claim, Evidence, Judged, Verdict, table};
 use crate::record::{tables, write_text};
 use crate::reproduce::Experiment;
 use crate::schema::Model;
@@ -188,8 +188,7 @@ impl Design {
     /// A candidate's score: weighted credit of all terms; 0 if anything of it failed.
     fn judge(&self, start: Start, settings: &Settings, outcome: &Outcome) -> Tried {
         let of = |experiment| {
-            let mut outcome = outcome.clone();
-            outcome.records.retain(|record| match experiment {
+            let conditions = outcome.conditions(settings, |record| match experiment {
                 Experiment::Exp1 => {
                     record.coordination == settings.motion.coordination
                         && settings.experiment.dimensions.contains(&record.dimension)
@@ -198,17 +197,18 @@ impl Design {
                     record.dimension == settings.experiment.dimension && record.model == Model::DpgmmLj
                 }
             });
-            let evidence = Evidence { conditions: outcome.conditions(settings), baselines: Vec::new() };
-            claims::judge(experiment, &evidence)
+            claims::judge(experiment, &Evidence { conditions, baselines: Vec::new() })
         };
-        let judged = [(Experiment::Exp1, of(Experiment::Exp1)), (Experiment::Exp2, of(Experiment::Exp2))];
+        let [first, second] = [Experiment::Exp1, Experiment::Exp2].map(of);
         let terms: Vec<(Judged, f64)> = self
             .score
             .iter()
             .map(|term| {
-                let (_, judged) =
-                    judged.iter().find(|(experiment, _)| *experiment == term.experiment).expect("both");
-                let judged = judged.iter().find(|judged| judged.claim.id == term.claim).expect("checked");
+                let mut judged = match term.experiment {
+                    Experiment::Exp1 => first.iter(),
+                    Experiment::Exp2 => second.iter(),
+                };
+                let judged = judged.find(|judged| judged.claim.id == term.claim).expect("checked");
                 (judged.clone(), term.credit(judged))
             })
             .collect();
@@ -243,16 +243,15 @@ pub fn search(design: &Design, out: &Path) -> Result<String, StudyError> {
     let (mut scores, mut credits, mut rounds) = (Vec::new(), Vec::new(), Vec::new());
     for (at, round) in design.round.iter().enumerate() {
         field.truncate(round.candidates);
-        let configure = |candidate: &Start| {
-            Ok(Configuration { name: candidate.name.clone(), settings: design.settings(round, candidate)? })
-        };
-        let configurations: Vec<Configuration> =
-            field.iter().map(configure).collect::<Result<_, SettingsError>>()?;
+        let configurations: Vec<Settings> = field
+            .iter()
+            .map(|candidate| design.settings(round, candidate))
+            .collect::<Result<_, SettingsError>>()?;
         let outcomes = run(&configurations, out, &format!("round {} of {}", at + 1, design.round.len()))?;
         let mut tried: Vec<Tried> = field
             .into_iter()
             .zip(configurations.iter().zip(&outcomes))
-            .map(|(start, (configuration, outcome))| design.judge(start, &configuration.settings, outcome))
+            .map(|(start, (settings, outcome))| design.judge(start, settings, outcome))
             .collect();
         // Stable: of equal scores the earlier candidate stays ahead.
         tried.sort_by(|a, b| b.score.total_cmp(&a.score));
@@ -305,7 +304,7 @@ impl Design {
                 claim: term.claim.clone(),
                 experiment: term.experiment,
                 weight: term.weight,
-                accepted: judged.claim.accept.map_or(String::new(), |(low, high)| format!("{low}..{high}")),
+                accepted: table::accepted(&judged.claim),
                 value: judged.reproduced.value,
                 n: judged.reproduced.n,
                 low,
@@ -345,10 +344,7 @@ impl Design {
             line(&mut text, format!("|---|---|{}---|", "---|".repeat(names.len())));
             for tried in &round[..shown] {
                 let cell = |(judged, _): &(Judged, f64)| {
-                    let value = judged
-                        .reproduced
-                        .value
-                        .map_or("none".to_owned(), |value| format!("{}", (value * 1e3).round() / 1e3));
+                    let value = table::number(judged.reproduced.value);
                     if judged.verdict == Verdict::Reproduced { format!("**{value}**") } else { value }
                 };
                 let cells: Vec<String> = tried.terms.iter().map(cell).collect();

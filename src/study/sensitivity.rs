@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use toml::Table;
 
 use super::search::flat;
-use super::{Configuration, Outcome, StudyError, deviations, run, write_manifest};
+use super::{Outcome, StudyError, deviations, run, write_manifest};
 use crate::conditions::{Condition, Conditions};
 use crate::pipeline::Record;
 use crate::plot;
@@ -185,11 +185,11 @@ impl Design {
         Ok(Self { part, ..self })
     }
 
-    fn configure(&self, name: String, value: &Table) -> Result<Configuration, StudyError> {
+    fn configure(&self, name: &str, value: &Table) -> Result<Settings, StudyError> {
         let origin = format!("the study's {name}");
         let mut settings = Settings::overlaid([&self.settings, value], &origin)?;
         settings.experiment.seed = self.seed;
-        Ok(Configuration { name, settings })
+        Ok(settings)
     }
 
     /// The settings of the default as the study runs it.
@@ -197,18 +197,20 @@ impl Design {
     /// # Errors
     /// If the design's settings cannot be used.
     pub fn defaults(&self) -> Result<Settings, StudyError> {
-        Ok(self.configure(DEFAULT.to_owned(), &Table::new())?.settings)
+        self.configure(DEFAULT, &Table::new())
     }
 
-    /// The default, and each value of each part under the name `part: value`.
+    /// The part and the value of each configuration, the default's first, and its settings.
     ///
     /// # Errors
     /// If the settings of one cannot be used.
-    pub fn configurations(&self) -> Result<Vec<Configuration>, StudyError> {
-        let mut all = vec![Configuration { name: DEFAULT.to_owned(), settings: self.defaults()? }];
+    pub fn configurations(&self) -> Result<Vec<([String; 2], Settings)>, StudyError> {
+        let mut all = vec![([DEFAULT.to_owned(), String::new()], self.defaults()?)];
         for part in &self.part {
             for value in &part.values {
-                all.push(self.configure(format!("{}: {}", part.name, label(value)), value)?);
+                let place = [part.name.clone(), label(value)];
+                let settings = self.configure(&place.join(": "), value)?;
+                all.push((place, settings));
             }
         }
         Ok(all)
@@ -238,14 +240,13 @@ pub fn default_value(settings: &Settings, key: &str) -> Option<String> {
 /// # Errors
 /// If a value's settings cannot be used, or a file cannot be written.
 pub fn study(design: &Design, text: &str, out: &Path) -> Result<(), StudyError> {
-    let configurations = design.configurations()?;
+    let (places, configurations): (Vec<_>, Vec<_>) = design.configurations()?.into_iter().unzip();
     let outcomes = run(&configurations, out, "sensitivity")?;
     let mut of_default = None;
     let mut rows = Vec::new();
-    for (Configuration { name, settings }, outcome) in configurations.iter().zip(&outcomes) {
+    for (([part, value], settings), outcome) in places.iter().zip(&configurations).zip(&outcomes) {
         let counted = Counted::new(settings, outcome);
         let default = of_default.get_or_insert_with(|| counted.clone());
-        let (part, value) = name.split_once(": ").unwrap_or((name, ""));
         rows.extend(counted.rows(part, value, outcome, default));
     }
     tables::write_rows(&out.join(TABLE), &rows)?;
@@ -271,13 +272,13 @@ pub fn redraw(folder: &Path) -> Result<Vec<String>, StudyError> {
     let rows: Vec<Row> = tables::read_rows(&folder.join(TABLE))?;
     // A study of some parts alone.
     design.part.retain(|part| rows.iter().any(|row| row.part == part.name));
-    let page = deviations::page(&design, &rows, &revision(folder)?);
-    write_text(&folder.join("DEVIATIONS.md"), &page)?;
+    let table = deviations::Table::new(&design, &rows);
+    write_text(&folder.join("DEVIATIONS.md"), &table.page(&revision(folder)?))?;
+    let columns = deviations::columns();
     let mut written = Vec::new();
     for part in &design.part {
         let name = format!("figures/{}.svg", part.name);
-        let picture =
-            plot::effects::draw(&deviations::columns(), &deviations::lines(&design, &rows, &part.name));
+        let picture = plot::effects::draw(&columns, &table.lines(&part.name));
         let picture = picture.map_err(|trouble| FileError::new(&folder.join(TABLE), trouble.0))?;
         write_text(&folder.join(&name), &picture)?;
         written.push(name);
@@ -300,7 +301,7 @@ struct Counted {
 
 impl Counted {
     fn new(settings: &Settings, outcome: &Outcome) -> Self {
-        let all = outcome.conditions(settings);
+        let all = outcome.conditions(settings, |_| true);
         Self { best: all.best(), all }
     }
 

@@ -43,19 +43,21 @@ fn parts_that_share_a_movement_are_together_and_no_others() {
         settings.experiment.simulations = 2;
         settings.experiment.coordinations = vec![0.5, settings.motion.coordination];
         change(&mut settings);
-        Configuration { name: name.to_owned(), settings }
+        (name.to_owned(), settings)
     };
-    let all = [
+    let (names, all): (Vec<String>, Vec<Settings>) = [
         configuration("default", &|_| ()),
         configuration("levels", &|settings| settings.quantise.levels = 7),
         configuration("gap", &|settings| settings.agent.gap = 0.01),
         configuration("seed", &|settings| settings.experiment.seed += 1),
-    ];
+    ]
+    .into_iter()
+    .unzip();
     let movements = by_movement(&all);
     // Two simulations at two p of three bodies.
     assert_eq!(movements.len(), 2 * 2 * 3);
     for parts in &movements {
-        let members: Vec<&str> = parts.iter().map(|part| all[part.configuration].name.as_str()).collect();
+        let members: Vec<&str> = parts.iter().map(|part| names[part.configuration].as_str()).collect();
         assert!([vec!["default", "levels"], vec!["gap"], vec!["seed"]].contains(&members), "{members:?}");
         assert!(parts.iter().all(|part| {
             (part.coordination, part.simulation) == (parts[0].coordination, parts[0].simulation)
