@@ -1,0 +1,283 @@
+#!/usr/bin/env python3
+"""Put the results of finished runs into the repository: reproduce/docs.py [RESULTS]
+
+RESULTS is the folder that holds exp1, exp2, search and sensitivity (default: results/). It updates
+
+- README.md: the table between <!-- claims --> and <!-- /claims -->, from claims.csv of both experiments;
+- docs/results.md: the tables of both experiments, from their claims.md;
+- docs/shown/: two figures, and the tables and pictures of search and sensitivity;
+- docs/sensitivity.md: the page of the sensitivity study;
+- DEVIATIONS.md: the table of open settings, from paper.toml, sensitivity.toml and search.toml. It needs no run.
+
+What RESULTS does not hold is skipped, with a line on standard error. Needs Python 3.11, and no packages.
+"""
+
+import csv
+import json
+import pathlib
+import re
+import shutil
+import sys
+import tomllib
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+SHOWN = ROOT / "docs" / "shown"
+
+# The claims that the README shows: what the abstract and the discussion of the paper rest on.
+CLAIMS = [
+    ("exp1", "tree-accuracy"),
+    ("exp1", "baseline-tree"),
+    ("exp1", "first-dimension"),
+    ("exp2", "best-coordination"),
+    ("exp2", "tree-random-movement"),
+]
+VERDICTS = ["reproduced", "not reproduced", "not testable"]
+UNITS = ["kg/m^3", "N m s/rad", "N m/rad", "m", "s"]
+
+
+def main():
+    results = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "results"
+    for step in [claims, experiment_1, experiment_2, search, sensitivity]:
+        try:
+            step(results)
+        except FileNotFoundError as missing:
+            skip(step, f"{missing.filename} is missing")
+        except Skip as reason:
+            skip(step, str(reason))
+    deviations()
+
+
+class Skip(Exception):
+    """Results that must not go into the repository."""
+
+
+def skip(step, reason):
+    print(f"docs.py: {step.__name__} skipped: {reason}", file=sys.stderr)
+
+
+def between_marks(path, name, body):
+    """Replace the text of a file between <!-- name --> and <!-- /name -->."""
+    pattern = rf"(<!-- {name} -->\n).*?(<!-- /{name} -->)"
+    text, found = re.subn(pattern, lambda mark: f"{mark[1]}{body}\n{mark[2]}", path.read_text(), flags=re.S)
+    assert found == 1, f"{path} must have the marks of {name} once, not {found} times"
+    path.write_text(text)
+
+
+def copy(sources, folder):
+    """Copy files. Those that exist are listed before the first is written, so that none is copied in part."""
+    sources = list(sources)
+    for source in sources:
+        if not source.is_file():
+            raise FileNotFoundError(2, "missing", str(source))
+    folder.mkdir(parents=True, exist_ok=True)
+    for source in sources:
+        shutil.copy(source, folder / source.name)
+
+
+def manifest(folder):
+    facts = json.loads((folder / "manifest.json").read_text())
+    if facts.get("quick"):
+        raise Skip(f"{folder} is a quick run, whose numbers are no replication")
+    return facts
+
+
+# ---- The experiments
+
+
+def claims(results):
+    """README.md: five claims, and how many of all are reproduced."""
+    experiments = {name: read_claims(results / name / "claims.csv") for name in ["exp1", "exp2"]}
+    lines = [
+        "| verdict | claim | paper | reproduced | n | 95 % interval | accepted |",
+        "|---|---|---|---|---|---|---|",
+    ]
+    for name, id in CLAIMS:
+        row = experiments[name][id]
+        unit = row["unit"]
+        cells = [
+            f"**{row['verdict']}**",
+            row["statement"],
+            row["wording"] or shown(row["published"], unit),
+            shown(row["value"], unit),
+            row["n"],
+            span(row["low"], row["high"], unit),
+            span(row["accepted_low"], row["accepted_high"], unit),
+        ]
+        lines.append(f"| {' | '.join(cells)} |")
+    # A claim of both experiments counts once.
+    verdicts = [row["verdict"] for row in (experiments["exp1"] | experiments["exp2"]).values()]
+    counts = ", ".join(f"{verdicts.count(verdict)} {verdict}" for verdict in VERDICTS)
+    lines += ["", f"All {len(verdicts)} claims: {counts}. {source(results)}"]
+    between_marks(ROOT / "README.md", "claims", "\n".join(lines))
+
+
+def read_claims(path):
+    """The rows of a table of claims by id, without those of the extension."""
+    with open(path, newline="") as file:
+        return {row["id"]: row for row in csv.DictReader(file) if row["counting"] == "all-draws"}
+
+
+def source(results):
+    """Commands, seed and size of the runs, in a sentence or two."""
+    runs = {}
+    for name in ["exp1", "exp2"]:
+        facts = manifest(results / name)
+        experiment, schema = facts["settings"]["experiment"], facts["settings"]["schema"]
+        size = (
+            f"seed {facts['seed']}, {experiment['simulations']} simulations, {schema['chains']} chains of "
+            f"{schema['sweeps']} sweeps for each condition, revision {facts['revision'][:7]}"
+        )
+        runs.setdefault(size, []).append(f"`reproduce/{name}.sh`")
+    return " ".join(f"Made by {' and '.join(commands)}: {size}." for size, commands in runs.items())
+
+
+def shown(value, unit):
+    """A number for people; rates in percent."""
+    if value == "":
+        return "–"
+    return f"{100 * float(value):.1f} %" if unit == "rate" else f"{float(value):.4g}"
+
+
+def span(low, high, unit):
+    if low == "" or high == "":
+        return "–"
+    if low == high:
+        return shown(low, unit)
+    return f"{shown(low, unit).removesuffix(' %')} to {shown(high, unit)}"
+
+
+def experiment_1(results):
+    experiment(results / "exp1", "fig10b-tree.svg")
+
+
+def experiment_2(results):
+    experiment(results / "exp2", "fig11b-tree.svg")
+
+
+def experiment(folder, figure):
+    """docs/results.md: all claims of an experiment; and its picture."""
+    manifest(folder)
+    table = (folder / "claims.md").read_text().strip()
+    copy([folder / "figures" / figure], SHOWN)
+    between_marks(ROOT / "docs" / "results.md", folder.name, table)
+
+
+# ---- The studies
+
+
+def search(results):
+    names = ["search.md", "scores.csv", "credits.csv", "best.toml"]
+    copy([results / "search" / name for name in names], SHOWN / "search")
+
+
+def sensitivity(results):
+    folder = results / "sensitivity"
+    page = (folder / "sensitivity.md").read_text()
+    copy([folder / "sensitivity.csv", *sorted((folder / "figures").glob("*.svg"))], SHOWN / "sensitivity")
+    # The page moves into docs/, so that links to its own files and to those of the repository change.
+    for old, new in [
+        ("](figures/", "](shown/sensitivity/"),
+        ("](sensitivity.csv)", "](shown/sensitivity/sensitivity.csv)"),
+        ("](reproduce/shown/", "](shown/"),
+        ("](docs/", "]("),
+        ("](reproduce/", "](../reproduce/"),
+    ]:
+        page = page.replace(old, new)
+    (ROOT / "docs" / "sensitivity.md").write_text(page)
+
+
+# ---- The open settings
+
+
+def deviations():
+    """DEVIATIONS.md: what the paper leaves open, and what this replication does instead."""
+    settings = read_settings()
+    folder = ROOT / "reproduce"
+    study = tomllib.loads((folder / "sensitivity.toml").read_text())
+    factors = tomllib.loads((folder / "search.toml").read_text())["factor"]
+    searched = {
+        f"{section}.{key}"
+        for factor in factors
+        for option in factor["options"]
+        for section, keys in option.items()
+        for key in keys
+    }
+    lines = ["| setting | the paper says | ours | reason | source |", "|---|---|---|---|---|"]
+    named = set()
+    for part in study["part"]:
+        if part["name"] == "pairs":
+            continue
+        named.update(part["settings"])
+        if any(settings[key]["ours"] for key in part["settings"]):
+            lines.append(
+                line(
+                    f"[{part['title']}](docs/sensitivity.md#{part['name']})",
+                    part["settings"],
+                    part["paper"],
+                    part["why"],
+                    settings,
+                    searched,
+                )
+            )
+    for key, setting in settings.items():
+        if setting["ours"] and key not in named:
+            clauses = [clause.strip() for clause in setting["comment"].split(";")]
+            paper = [clause for clause in clauses if clause.startswith(("stated", "the paper"))]
+            ours = [clause.removeprefix("ours: ") for clause in clauses if clause not in paper]
+            reason = "; ".join(ours)
+            paper = "; ".join(paper) or "nothing"
+            lines.append(line("", [key], capital(paper), capital(reason), settings, searched))
+    between_marks(ROOT / "DEVIATIONS.md", "settings", "\n".join(lines))
+
+
+def read_settings():
+    """Values of paper.toml as they are written there, and whose they are."""
+    text = (ROOT / "reproduce" / "paper.toml").read_text()
+    settings, section, key = {}, None, None
+    for row in text.splitlines():
+        if header := re.fullmatch(r"\[(\w+)\]", row):
+            section = header[1]
+        elif entry := re.fullmatch(r"(\w+) = (.+?)\s+# (.+)", row):
+            key = f"{section}.{entry[1]}"
+            settings[key] = {"value": entry[2].strip('"'), "comment": entry[3]}
+        elif (more := re.fullmatch(r"\s+# (.+)", row)) and key:
+            settings[key]["comment"] += f" {more[1]}"
+    parsed = tomllib.loads(text)
+    keys = {f"{section}.{key}" for section, keys in parsed.items() for key in keys}
+    assert keys == set(settings), f"paper.toml: no comment beside {keys - set(settings)}"
+    for setting in settings.values():
+        comment = setting["comment"]
+        setting["ours"] = "ours:" in comment
+        unit = re.match(rf"(?:ours: |stated \([\d.]+\): )({'|'.join(map(re.escape, UNITS))})(?:[,;]|$)", comment)
+        setting["unit"] = f" {unit[1].replace('^3', '³')}" if unit else ""
+    return settings
+
+
+def line(title, keys, paper, reason, settings, searched):
+    names = ", ".join(f"`{key}`" for key in keys)
+    ours = ", ".join(settings[key]["value"] + settings[key]["unit"] for key in keys)
+    sources = {}
+    for key in keys:
+        sources.setdefault(source_of(key, settings[key], searched), []).append(key.split(".")[1])
+    if len(sources) == 1:
+        origin = next(iter(sources))
+    else:
+        origin = "; ".join(f"{name}: {', '.join(keys)}" for name, keys in sources.items())
+    return f"| {f'{title}: ' if title else ''}{names} | {paper} | {ours} | {reason} | {origin} |"
+
+
+def source_of(key, setting, searched):
+    if stated := re.match(r"stated (\([\d.]+\))(?!.*ours:)", setting["comment"]):
+        return f"paper {stated[1]}"
+    if key in searched:
+        return "[search](docs/search.md)"
+    if cited := re.search(r"[A-Z]\w+ and [A-Z]\w+ \(\d{4}\)", setting["comment"]):
+        return cited[0]
+    return "our choice"
+
+
+def capital(text):
+    return text[:1].upper() + text[1:]
+
+
+main()
