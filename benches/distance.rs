@@ -4,14 +4,14 @@
 use std::hint::black_box;
 use std::time::Instant;
 
-use bodyschema::agent::Agent;
-use bodyschema::distance::information_metric;
-use bodyschema::quantise::quantise;
-use bodyschema::sense::sense;
+use bodyschema::numerics::rng::stream;
 use bodyschema::settings::Settings;
-use bodyschema::simulate::Trajectory;
-use bodyschema::simulate::world::Pose;
-use bodyschema::streams::stream;
+use bodyschema::stages::agent::Agent;
+use bodyschema::stages::distance::information_metric;
+use bodyschema::stages::quantise::quantise;
+use bodyschema::stages::sense::sense;
+use bodyschema::stages::simulate::Pose;
+use bodyschema::stages::simulate::Trajectory;
 use rand::RngExt;
 
 /// T.

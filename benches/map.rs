@@ -3,9 +3,9 @@
 
 use std::time::Instant;
 
-use bodyschema::body_map::ClassicalScaling;
-use bodyschema::distance::Distances;
-use bodyschema::streams::stream;
+use bodyschema::numerics::rng::stream;
+use bodyschema::stages::body_map::ClassicalScaling;
+use bodyschema::stages::distance::Distances;
 use rand::RngExt;
 use rayon::prelude::*;
 

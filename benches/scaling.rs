@@ -6,17 +6,16 @@ use std::path::Path;
 use std::process::Command;
 use std::time::Instant;
 
-use bodyschema::agent::Agent;
-use bodyschema::body_map::{BodyMap, ClassicalScaling};
-use bodyschema::distance::{Distances, information_metric};
-use bodyschema::quantise::{Symbols, quantise};
-use bodyschema::record::tables::write_rows;
-use bodyschema::schema::{Model, infer};
-use bodyschema::sense::{Tactile, sense};
+use bodyschema::files::tables::write_rows;
+use bodyschema::numerics::rng::stream;
 use bodyschema::settings::Settings;
-use bodyschema::simulate::simulate;
-use bodyschema::streams::stream;
-use indicatif::ProgressBar;
+use bodyschema::stages::agent::Agent;
+use bodyschema::stages::body_map::{BodyMap, ClassicalScaling};
+use bodyschema::stages::distance::{Distances, information_metric};
+use bodyschema::stages::quantise::{Symbols, quantise};
+use bodyschema::stages::schema::{Model, infer};
+use bodyschema::stages::sense::{Tactile, sense};
+use bodyschema::stages::simulate::simulate;
 use plotters::prelude::*;
 use rand::RngExt;
 use serde::Serialize;
@@ -90,7 +89,11 @@ fn simulate_samples(samples: usize) -> Measured {
         || settings(samples, 840),
         |settings| {
             let agent = Agent::new(&settings.agent, &settings.skin);
-            simulate(&agent, settings, &mut stream(1, 1, "motion", 0), &ProgressBar::hidden())
+            {
+                let (motion, physics, interval) =
+                    (&settings.motion, &settings.physics, settings.sense.interval);
+                simulate(&agent, motion, physics, interval, &mut stream(1, 1, "motion", 0), &|| ())
+            }
         },
     )
 }
@@ -99,7 +102,9 @@ fn sense_size(samples: usize, sensors: usize) -> Measured {
     let settings = settings(samples, sensors);
     let agent = Agent::new(&settings.agent, &settings.skin);
     let rng = &mut stream(1, 1, "motion", 0);
-    let trajectory = simulate(&agent, &settings, rng, &ProgressBar::hidden()).expect("a stable body");
+    let trajectory =
+        simulate(&agent, &settings.motion, &settings.physics, settings.sense.interval, rng, &|| ())
+            .expect("a stable body");
     measure(|| (), |()| sense(&agent, &trajectory, &settings.sense))
 }
 
@@ -155,7 +160,7 @@ fn chains(points: usize, dims: usize, components: usize, parts: usize, chains: u
     let map = BodyMap { dims, coordinates };
     let mut schema = Settings::paper().schema;
     (schema.components, schema.chains, schema.sweeps) = (components, chains, 200);
-    measure(|| (), |()| infer(&map, Model::DpgmmLj, &schema, 1, 1, &ProgressBar::hidden()))
+    measure(|| (), |()| infer(&map, Model::DpgmmLj, &schema, 1, 1, &|| ()))
 }
 
 const SERIES: &[Series] = &[

@@ -3,12 +3,11 @@
 
 use std::time::Instant;
 
-use bodyschema::agent::Agent;
-use bodyschema::sense::sense;
+use bodyschema::numerics::rng::stream;
 use bodyschema::settings::Settings;
-use bodyschema::simulate::simulate;
-use bodyschema::streams::stream;
-use indicatif::ProgressBar;
+use bodyschema::stages::agent::Agent;
+use bodyschema::stages::sense::sense;
+use bodyschema::stages::simulate::simulate;
 
 /// Measurements, of which the median is printed.
 const MEASUREMENTS: usize = 3;
@@ -16,24 +15,21 @@ const MEASUREMENTS: usize = 3;
 fn main() {
     let settings = Settings::paper();
     let agent = Agent::new(&settings.agent, &settings.skin);
+    let (motion, physics, interval) = (&settings.motion, &settings.physics, settings.sense.interval);
+    let samples = physics.samples(interval);
     let mut times = Vec::new();
     for _ in 0..MEASUREMENTS {
         let start = Instant::now();
         let mut rng = stream(1, 1, "motion", 0);
         let trajectory =
-            simulate(&agent, &settings, &mut rng, &ProgressBar::hidden()).expect("a stable body");
+            simulate(&agent, motion, physics, interval, &mut rng, &|| ()).expect("a stable body");
         let simulated = start.elapsed().as_secs_f64();
         let tactile = sense(&agent, &trajectory, &settings.sense);
-        assert_eq!(tactile.samples, settings.samples());
+        assert_eq!(tactile.samples, samples);
         times.push((start.elapsed().as_secs_f64(), simulated));
     }
     times.sort_by(|a, b| a.0.total_cmp(&b.0));
     let (both, simulated) = times[MEASUREMENTS / 2];
-    println!("simulate: {simulated:.3} s for {} steps", settings.samples() * settings.steps_per_sample());
-    println!(
-        "sense: {:.3} s for {} samples of {} sensors",
-        both - simulated,
-        settings.samples(),
-        agent.sites.len()
-    );
+    println!("simulate: {simulated:.3} s for {} steps", samples * physics.steps_per_sample(interval));
+    println!("sense: {:.3} s for {} samples of {} sensors", both - simulated, samples, agent.sites.len());
 }

@@ -7,13 +7,13 @@ mod synthetic;
 use std::error::Error;
 use std::path::Path;
 
-use bodyschema::evaluate::score;
-use bodyschema::record::tables::write_rows;
-use bodyschema::schema::{Model, infer};
-use bodyschema::settings::{EdgeWeight, Settings};
-use bodyschema::statistics::mean;
-use bodyschema::streams::stream;
-use indicatif::ProgressBar;
+use bodyschema::files::tables::write_rows;
+use bodyschema::internals::statistics::mean;
+use bodyschema::numerics::rng::stream;
+use bodyschema::settings::Settings;
+use bodyschema::stages::evaluate::score;
+use bodyschema::stages::schema::EdgeWeight;
+use bodyschema::stages::schema::{Model, infer};
 use plotters::prelude::*;
 
 const BODIES: usize = 24;
@@ -50,7 +50,7 @@ fn condition(dimension: usize, separation: f64) -> Result<Row, Box<dyn Error>> {
         let stage = format!("synthetic d {dimension} separation {separation}");
         let body = synthetic::body(dimension, separation, &mut stream(1, 1, &stage, at));
         identifiable += usize::from(body.identifiable);
-        let samples = infer(&body.map, Model::DpgmmLj, &schema, 1, at, &ProgressBar::hidden())?;
+        let samples = infer(&body.map, Model::DpgmmLj, &schema, 1, at, &|| ())?;
         let judge = |sample| score(sample, &body.truth, synthetic::ELIGIBLE_ARI);
         let scores: Vec<_> = samples.iter().map(judge).collect();
         let eligible = scores.iter().filter(|score| score.eligible).count();

@@ -12,7 +12,7 @@ root, report = pathlib.Path(sys.argv[1]).resolve(), json.load(open(sys.argv[2]))
 rows = []
 for file in report["files"]:
     path = pathlib.Path(*file["path"]).relative_to(root)
-    if path.parts[0] != "src" or path.name in ("tests.rs", "testing.rs"):
+    if path.parts[0] != "src" or "tests" in path.parts or path.name in ("tests.rs", "testing.rs", "fixtures.rs"):
         continue
     source = (root / path).read_text().splitlines()
     tests_from = next((n for n, line in enumerate(source, 1) if line.startswith("#[cfg(test)]")), len(source) + 1)

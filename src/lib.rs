@@ -1,44 +1,68 @@
-//! A replication of Mimura, Hagiwara, Taniguchi & Inamura, "Bayesian Body Schema Estimation using Tactile
+//! A replication of Mimura, Hagiwara, Taniguchi and Inamura, "Bayesian Body Schema Estimation using Tactile
 //! Information obtained through Coordinated Random Movements" (Advanced Robotics, 2017).
 //!
-//! An [`agent`] of five cylinders moves at random in Open Dynamics Engine ([`simulate`]). The pressure of
-//! the fluid on its sensors ([`sense`]) is turned into symbols ([`quantise`]); how much the symbols of two
-//! sensors tell of each other is their [`distance`], and the distances place all sensors on a [`body_map`], which
-//! [`smacof`] may improve; an experiment has several [`body_maps`].
-//! A mixture with latent joints finds parts and their tree on it, the body [`schema`]; [`baselines`] cluster it
-//! in other ways, and the truth says how well ([`evaluate`]). [`pipeline`] composes these stages;
-//! [`reproduce`] runs an experiment of them and sums it up for its [`conditions`], from which [`figures`] and
-//! [`claims`] are made. [`plot`] draws the figures and [`report`] shows all of it. All [`settings`] stand in
-//! `reproduce/paper.toml`, and a [`study`] says where they come from and what others would do; [`record`] reads and
-//! writes every file, and [`verify`] compares finished results.
+//! A body of five cylinders moves at random in a fluid. From the pressure on its 840 sensors alone, the pipeline finds
+//! out how many parts the body has, which sensor sits on which part, and how the parts are joined. [`stages`] lists
+//! what happens, in order; [`pipeline`] composes it and is the file to read first. All [`settings`] have their
+//! defaults in `reproduce/paper.toml`; [`files`] reads and writes what NumPy and a spreadsheet open.
+//!
+//! From a movement to a tree:
+//!
+//! ```
+//! use bodyschema::numerics::rng::stream;
+//! use bodyschema::settings::Settings;
+//! use bodyschema::stages::agent::Agent;
+//! use bodyschema::stages::body_map::ClassicalScaling;
+//! use bodyschema::stages::distance::information_metric;
+//! use bodyschema::stages::evaluate::{parts, score};
+//! use bodyschema::stages::quantise::quantise;
+//! use bodyschema::stages::schema::{Model, best, infer};
+//! use bodyschema::stages::sense::sense;
+//! use bodyschema::stages::simulate::simulate;
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let mut settings = Settings::paper();
+//! settings.physics.duration = 2000.0; // s, instead of 10,000 s
+//! settings.schema.chains = 8;
+//! let Settings { motion, physics, schema, .. } = &settings;
+//! let (seed, simulation) = (1, 1);
+//!
+//! let agent = Agent::new(&settings.agent, &settings.skin);
+//! let mut rng = stream(seed, simulation, "motion", 0);
+//! let trajectory = simulate(&agent, motion, physics, settings.sense.interval, &mut rng, &|| ())?;
+//! let tactile = sense(&agent, &trajectory, &settings.sense); // pressures, Pa
+//! let symbols = quantise(&tactile, &settings.quantise);
+//! let distances = information_metric(&symbols); // bits
+//! let map = ClassicalScaling::new(&distances, 9)?.coordinates(9)?; // 840 points in 9 dimensions
+//! let draws = infer(&map, Model::DpgmmLj, schema, seed, simulation, &|| ())?;
+//!
+//! let best = best(&draws); // the draw of highest log posterior
+//! for edge in &best.tree {
+//!     println!("component {} is joined to component {}", edge.child, edge.parent);
+//! }
+//! println!("{} parts, {:?}", parts(&best.labels), score(best, &agent.truth(), 1.0));
+//! # assert!((2..=10).contains(&parts(&best.labels)) && best.tree.len() + 1 == parts(&best.labels));
+//! # Ok(())
+//! # }
+//! ```
 
-pub mod agent;
-pub mod baselines;
-pub mod body_map;
-pub mod body_maps;
-pub mod claims;
-pub mod conditions;
-pub mod distance;
-mod eigen;
-pub mod evaluate;
-pub mod figures;
+mod analysis;
+mod experiments;
+pub mod files;
+pub mod numerics;
 pub mod pipeline;
-pub mod plot;
-pub mod progress;
-pub mod quantise;
-pub mod record;
-pub mod report;
-pub mod reproduce;
-pub mod schema;
-pub mod sense;
+mod report;
 pub mod settings;
-pub mod simulate;
-pub mod smacof;
-pub mod statistics;
-pub mod streams;
-pub mod study;
-mod vectorised;
-pub mod verify;
+pub mod stages;
 
-#[cfg(test)]
-mod testing;
+#[doc(hidden)]
+pub mod cli;
+
+/// What the tests, the fuzz targets and the examples of this repository use beside the library's own surface.
+#[doc(hidden)]
+pub mod internals {
+    pub use crate::analysis::published::figures;
+    pub use crate::analysis::statistics;
+    pub use crate::experiments::verify;
+    pub use crate::report::{page, plot};
+}

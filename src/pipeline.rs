@@ -1,24 +1,21 @@
 //! The stages composed: settings → body maps, and body maps → scored samples. The file to read first.
 
-use indicatif::ProgressBar;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::agent::Agent;
-use crate::baselines::{Clustering, cluster};
-use crate::body_map::{ClassicalScaling, MapError};
-use crate::body_maps::BodyMaps;
-use crate::distance::{Distances, information_metric};
-use crate::evaluate::{Truth, adjusted_rand_index, parts, score};
-use crate::quantise::quantise;
-use crate::schema::gaussian::MixtureError;
-use crate::schema::{Model, Sample, best, infer, one_part};
-use crate::sense::{Tactile, sense};
+use crate::numerics::partition::adjusted_rand_index;
+use crate::numerics::rng::stream;
 use crate::settings::Settings;
-use crate::simulate::simulate;
-use crate::simulate::world::Unstable;
-use crate::smacof::Improvement;
-use crate::streams::stream;
+use crate::stages::agent::Agent;
+use crate::stages::baselines::{Clustering, cluster};
+use crate::stages::body_map::{BodyMaps, ClassicalScaling, Improvement, MapError};
+use crate::stages::distance::{Distances, information_metric};
+use crate::stages::evaluate::{parts, score};
+use crate::stages::quantise::quantise;
+use crate::stages::schema::{Draw, InferenceError, Model, best, infer, one_part};
+use crate::stages::sense::{Tactile, sense};
+use crate::stages::simulate::{Unstable, simulate};
+use crate::stages::tree::Truth;
 
 /// What the inference and its evaluation need of one simulation.
 #[derive(Debug, Clone)]
@@ -54,6 +51,17 @@ pub struct Facts {
     pub improvements: Vec<Improvement>,
 }
 
+/// What is inferred: a mixture, on a body map of some dimensions, of a body that moved at some p.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Condition {
+    /// The mixture.
+    pub model: Model,
+    /// p.
+    pub coordination: f64,
+    /// d.
+    pub dimension: usize,
+}
+
 /// A draw and its evaluation: a row of an experiment's `samples.csv`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Record {
@@ -79,6 +87,13 @@ pub struct Record {
     pub eligible: bool,
     /// Whether the tree is right.
     pub tree_correct: bool,
+}
+
+impl Record {
+    /// The condition that this draw is of.
+    pub fn condition(&self) -> Condition {
+        Condition { model: self.model, coordination: self.coordination, dimension: self.dimension }
+    }
 }
 
 /// A clustering that was told the number of clusters, and its evaluation: a row of `baselines.csv`.
@@ -107,7 +122,7 @@ pub enum StageError {
     /// Stage 5.
     Map(#[from] MapError),
     /// Stage 6.
-    Infer(#[from] MixtureError),
+    Infer(#[from] InferenceError),
 }
 
 /// What a body felt in one simulation, and what it is made of.
@@ -119,16 +134,17 @@ pub struct FeltBody {
     pub truth: Truth,
 }
 
-/// Stages 1 and 2. `progress` advances by one for each sample.
+/// Stages 1 and 2. Calls `tick` once for each sample.
 ///
 /// # Errors
 /// If the simulation is unstable.
-pub fn feel(settings: &Settings, simulation: usize, progress: &ProgressBar) -> Result<FeltBody, StageError> {
-    let agent = Agent::new(&settings.agent, &settings.skin);
-    let mut rng = stream(settings.experiment.seed, simulation, "motion", 0);
-    let trajectory = simulate(&agent, settings, &mut rng, progress)?;
-    let tactile = sense(&agent, &trajectory, &settings.sense);
-    Ok(FeltBody { tactile, truth: Truth { labels: agent.labels(), tree: agent.tree() } })
+pub fn feel(settings: &Settings, simulation: usize, tick: &dyn Fn()) -> Result<FeltBody, StageError> {
+    let Settings { agent, skin, motion, physics, sense: tactile_sense, experiment, .. } = settings;
+    let agent = Agent::new(agent, skin);
+    let mut rng = stream(experiment.seed, simulation, "motion", 0);
+    let trajectory = simulate(&agent, motion, physics, tactile_sense.interval, &mut rng, tick)?;
+    let tactile = sense(&agent, &trajectory, tactile_sense);
+    Ok(FeltBody { tactile, truth: agent.truth() })
 }
 
 /// Stages 3 to 5, to maps of each of `dims` dimensions, of which there is at least one.
@@ -161,10 +177,10 @@ pub struct Inference {
     /// All draws, evaluated.
     pub records: Vec<Record>,
     /// The draw of highest log posterior.
-    pub best: Sample,
+    pub best: Draw,
 }
 
-/// Stages 6 and 7 for one condition. `progress` advances by one for each chain.
+/// Stages 6 and 7 for one condition. Calls `tick` once for each chain.
 ///
 /// Where there is no body map to draw from, the answer of every chain is one part that has all sensors.
 ///
@@ -172,40 +188,39 @@ pub struct Inference {
 /// If the map spans fewer than `dimension` dimensions.
 pub fn infer_and_score(
     body: &Body,
-    dimension: usize,
-    model: Model,
+    condition: Condition,
     settings: &Settings,
     simulation: usize,
-    progress: &ProgressBar,
+    tick: &(dyn Fn() + Sync),
 ) -> Result<Inference, StageError> {
-    let schema = &settings.schema;
-    let samples = match &body.maps {
+    let (schema, Condition { model, coordination, dimension }) = (&settings.schema, condition);
+    let draws = match &body.maps {
         None => {
-            progress.inc(schema.chains as u64);
+            (0..schema.chains).for_each(|_| tick());
             one_part(body.truth.labels.len(), schema)
         }
         Some(maps) => {
             let map = maps.in_dims(dimension);
-            infer(&map, model, schema, settings.experiment.seed, simulation, progress)?
+            infer(&map, model, schema, settings.experiment.seed, simulation, tick)?
         }
     };
-    let record = |sample: &Sample| {
-        let score = score(sample, &body.truth, settings.evaluate.eligible_ari);
+    let record = |draw: &Draw| {
+        let score = score(draw, &body.truth, settings.evaluate.eligible_ari);
         Record {
             simulation,
-            coordination: settings.motion.coordination,
+            coordination,
             dimension,
             model,
-            chain: sample.chain,
-            sweep: sample.sweep,
-            parts: parts(&sample.labels),
-            log_posterior: sample.log_posterior,
+            chain: draw.chain,
+            sweep: draw.sweep,
+            parts: parts(&draw.labels),
+            log_posterior: draw.log_posterior,
             ari: score.ari,
             eligible: score.eligible,
             tree_correct: score.tree_correct,
         }
     };
-    Ok(Inference { records: samples.iter().map(record).collect(), best: best(&samples).clone() })
+    Ok(Inference { records: draws.iter().map(record).collect(), best: best(&draws).clone() })
 }
 
 /// Ward's method, k-means and GMM with each number of clusters on one body map (figure 8a).

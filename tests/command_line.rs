@@ -5,9 +5,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-use bodyschema::body_map::BodyMap;
-use bodyschema::distance::Distances;
-use bodyschema::record::{npy, sha256};
+use bodyschema::files::{npy, sha256};
+use bodyschema::stages::body_map::BodyMap;
+use bodyschema::stages::distance::Distances;
 
 /// A small body that still shows its parts: 5 parts of 24 sensors, 1500 s.
 const SMALL: &str = "
@@ -228,8 +228,10 @@ fn foreign_data_is_clustered_and_every_draw_can_be_kept() {
 fn symbols_are_taken_as_they_are_and_constant_sensors_reported() {
     let folder = tempfile::tempdir().unwrap();
     // Two sensors: one bit, and a constant. As symbols: H(X|Y) = 1 bit.
-    let tactile =
-        bodyschema::sense::Tactile { samples: 4, pressures: vec![0.0, 1.0, 0.0, 1.0, 3.0, 3.0, 3.0, 3.0] };
+    let tactile = bodyschema::stages::sense::Tactile {
+        samples: 4,
+        pressures: vec![0.0, 1.0, 0.0, 1.0, 3.0, 3.0, 3.0, 3.0],
+    };
     npy::write_tactile(&folder.path().join("symbols.npy"), &tactile).unwrap();
     let output = bodyschema(folder.path(), "distance symbols.npy --symbols --out distance.npy");
     let (errors, status) = (String::from_utf8(output.stderr).unwrap(), output.status.code());
@@ -242,7 +244,7 @@ fn symbols_are_taken_as_they_are_and_constant_sensors_reported() {
 #[test]
 fn symbols_that_are_all_the_same_are_no_distance() {
     let folder = tempfile::tempdir().unwrap();
-    let tactile = bodyschema::sense::Tactile { samples: 3, pressures: vec![0.0; 6] };
+    let tactile = bodyschema::stages::sense::Tactile { samples: 3, pressures: vec![0.0; 6] };
     npy::write_tactile(&folder.path().join("zero.npy"), &tactile).unwrap();
     assert!(bodyschema(folder.path(), "distance zero.npy --symbols --out distance.npy").status.success());
     let distances = npy::read_distances(&folder.path().join("distance.npy")).unwrap();
@@ -262,7 +264,7 @@ fn a_mistake_is_one_line_that_says_what_and_where_and_status_2() {
     npy::write_body_map(&at("wide.npy"), &BodyMap { dims: 3, coordinates: vec![1.0; 6] }).unwrap();
     npy::write_body_map(&at("flat.npy"), &BodyMap { dims: 2, coordinates: vec![1., 5., 2., 5., 4., 5.] })
         .unwrap();
-    let wide = bodyschema::sense::Tactile { samples: 1, pressures: vec![1.0; 20_001] };
+    let wide = bodyschema::stages::sense::Tactile { samples: 1, pressures: vec![1.0; 20_001] };
     npy::write_tactile(&at("transposed.npy"), &wide).unwrap();
     let same = Distances { sensors: 2, values: vec![0.0; 4] };
     npy::write_distances(&at("same.npy"), &same).unwrap();

@@ -1,7 +1,7 @@
 //! The information metric is a metric, whatever the symbols; twins that are none are rejected.
 
-use bodyschema::distance::{Distances, information_metric};
-use bodyschema::quantise::Symbols;
+use bodyschema::stages::distance::{Distances, information_metric};
+use bodyschema::stages::quantise::Symbols;
 use proptest::prelude::*;
 
 /// Four sensors over up to 40 samples of up to five symbols.

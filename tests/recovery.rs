@@ -4,11 +4,12 @@
 #[path = "support/synthetic.rs"]
 mod synthetic;
 
-use bodyschema::evaluate::{Truth, parts, score};
-use bodyschema::schema::{Model, infer};
-use bodyschema::settings::{EdgeWeight, Schema, Settings};
-use bodyschema::streams::stream;
-use indicatif::ProgressBar;
+use bodyschema::numerics::rng::stream;
+use bodyschema::settings::Settings;
+use bodyschema::stages::evaluate::{parts, score};
+use bodyschema::stages::schema::{EdgeWeight, Schema};
+use bodyschema::stages::schema::{Model, infer};
+use bodyschema::stages::tree::Truth;
 
 /// (draws that find the parts and the tree, draws that find the parts, all draws) over the identifiable of
 /// 12 bodies; `judge` may replace the truth by which a body is judged.
@@ -24,7 +25,7 @@ fn recovered(dims: usize, separation: f64, judge: impl Fn(Truth, usize) -> Truth
             continue;
         }
         let truth = judge(body.truth, at);
-        for sample in infer(&body.map, Model::DpgmmLj, &schema, 1, at, &ProgressBar::hidden()).unwrap() {
+        for sample in infer(&body.map, Model::DpgmmLj, &schema, 1, at, &|| ()).unwrap() {
             let score = score(&sample, &truth, synthetic::ELIGIBLE_ARI);
             counts.0 += usize::from(score.eligible && score.tree_correct);
             counts.1 += usize::from(score.eligible);
@@ -49,7 +50,7 @@ fn every_edge_weight_gives_a_tree_over_the_parts_and_the_collapsed_one_finds_it_
     let body = synthetic::body(14, 3.0, &mut stream(1, 1, "synthetic", at));
     for edge_weight in [EdgeWeight::Literal, EdgeWeight::Pairwise, EdgeWeight::Collapsed] {
         let schema = Schema { chains: 6, sweeps: 150, edge_weight, ..Settings::paper().schema };
-        let samples = infer(&body.map, Model::DpgmmLj, &schema, 1, 1, &ProgressBar::hidden()).unwrap();
+        let samples = infer(&body.map, Model::DpgmmLj, &schema, 1, 1, &|| ()).unwrap();
         let mut right = 0;
         for sample in &samples {
             assert_eq!(

@@ -1,16 +1,17 @@
 //! Agreement with NumPy, SciPy, scikit-learn and statsmodels; `tests/reference/make.py` made the values.
 
-use bodyschema::baselines::{gmm, k_means, ridge, ward};
-use bodyschema::body_map::{BodyMap, ClassicalScaling};
-use bodyschema::distance::{Distances, information_metric};
-use bodyschema::evaluate::adjusted_rand_index;
-use bodyschema::quantise::Symbols;
-use bodyschema::schema::gaussian::NormalInverseWishart;
-use bodyschema::schema::points::Statistics;
-use bodyschema::schema::tree::prim;
-use bodyschema::smacof::{Fit, Majorisation};
-use bodyschema::statistics;
-use bodyschema::streams::stream;
+use bodyschema::internals::statistics;
+use bodyschema::numerics::rng::stream;
+use bodyschema::stages::baselines::{gmm, ridge, ward};
+use bodyschema::stages::body_map::{BodyMap, ClassicalScaling};
+use bodyschema::stages::body_map::{Fit, Majorisation};
+use bodyschema::stages::distance::{Distances, information_metric};
+use bodyschema::stages::evaluate::adjusted_rand_index;
+use bodyschema::stages::mixture::NormalInverseWishart;
+use bodyschema::stages::mixture::Statistics;
+use bodyschema::stages::mixture::k_means;
+use bodyschema::stages::quantise::Symbols;
+use bodyschema::stages::tree::prim;
 use nalgebra::{DMatrix, DVector};
 use serde::Deserialize;
 

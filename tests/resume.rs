@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::time::Duration;
 
-use bodyschema::streams::stream;
+use bodyschema::numerics::rng::stream;
 use rand::RngExt;
 
 /// Both experiments in a second or two.
@@ -200,7 +200,7 @@ fn damaged_and_foreign_parts_are_done_again_with_a_line_that_says_so() {
     let map = place.out("swapped").join("simulation-1/body-map.npy");
     fs::write(&map, fs::read(place.out("whole").join("simulation-2/body-map.npy")).unwrap()).unwrap();
     let said = place.finish("exp1", "swapped");
-    assert!(said.contains("body-map.npy: has changed or is missing; this part is done again"), "{said}");
+    assert!(said.contains("body-map.npy: has changed or is missing; it is made again"), "{said}");
     same(&place.out("swapped"), &expected, "a body map of another simulation");
 
     leave_after(&place, "other", "simulation-1/dpgmm-lj-2.json", "-KILL");
@@ -231,12 +231,12 @@ fn a_map_for_each_dimension_is_taken_up_again() {
 
     leave_after(&place, "left", "simulation-1/dpgmm-2.json", "-KILL");
     let said = place.finish("exp1", "left");
-    assert!(said.contains("going on from") && !said.contains("done again"), "{said}");
+    assert!(said.contains("going on from") && !said.contains("again"), "{said}");
     same(&place.out("left"), &expected, "maps taken up");
     leave_after(&place, "lost", "simulation-1/dpgmm-2.json", "-KILL");
     fs::remove_file(place.out("lost").join(map(2))).unwrap();
     let said = place.finish("exp1", "lost");
-    assert!(said.contains("body-map-2.npy: has changed or is missing; this part is done again"), "{said}");
+    assert!(said.contains("body-map-2.npy: has changed or is missing; it is made again"), "{said}");
     same(&place.out("lost"), &expected, "a map that is missing");
 }
 

@@ -7,13 +7,13 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use bodyschema::body_map::BodyMap;
+use bodyschema::numerics::rng::{Stream, stream};
 use bodyschema::pipeline::StageError;
-use bodyschema::schema::gaussian::MixtureError;
-use bodyschema::schema::{Model, infer};
-use bodyschema::settings::{EdgeWeight, PAPER, Settings, SettingsError, Start};
-use bodyschema::streams::{Stream, stream};
-use indicatif::ProgressBar;
+use bodyschema::settings::{PAPER, Settings, SettingsError};
+use bodyschema::stages::body_map::BodyMap;
+use bodyschema::stages::schema::InferenceError;
+use bodyschema::stages::schema::{EdgeWeight, Start};
+use bodyschema::stages::schema::{Model, infer};
 use rand::RngExt;
 use rand::seq::IndexedRandom;
 use rayon::prelude::*;
@@ -238,7 +238,7 @@ fn mixtures_of_extreme_priors_on_nearly_flat_maps_end_in_samples_or_in_an_error(
         };
         let map = BodyMap { dims: 3, coordinates: (0..60).flat_map(point).collect() };
         for model in Model::ALL {
-            match infer(&map, model, &schema, 1, 1, &ProgressBar::hidden()) {
+            match infer(&map, model, &schema, 1, 1, &|| ()) {
                 Ok(samples) => {
                     assert!(
                         samples.iter().all(|sample| sample.log_posterior.is_some_and(f64::is_finite)),
@@ -248,10 +248,10 @@ fn mixtures_of_extreme_priors_on_nearly_flat_maps_end_in_samples_or_in_an_error(
                 }
                 Err(error) => {
                     assert!(
-                        matches!(error, MixtureError::Flat { .. } | MixtureError::Rounding),
+                        matches!(error, InferenceError::Flat { .. } | InferenceError::Rounding),
                         "{case}: {error}"
                     );
-                    lost += usize::from(error == MixtureError::Rounding);
+                    lost += usize::from(error == InferenceError::Rounding);
                 }
             }
         }

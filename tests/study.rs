@@ -111,15 +111,15 @@ fn a_study_says_what_each_value_does_goes_on_where_it_was_and_hangs_on_no_number
     assert_eq!(
         one.keys().map(String::as_str).collect::<Vec<_>>(),
         [
-            "DEVIATIONS.md",
             "design.toml",
             "figures/gains.svg",
             "figures/levels.svg",
             "manifest.json",
-            "sensitivity.csv"
+            "sensitivity.csv",
+            "sensitivity.md"
         ]
     );
-    let page = fs::read_to_string(at("one/DEVIATIONS.md")).unwrap();
+    let page = fs::read_to_string(at("one/sensitivity.md")).unwrap();
     assert!(page.contains("| levels = 3 |") && page.contains("2 simulations failed: "), "{page}");
     assert!(!page.contains("NaN"));
     let mut table = csv::Reader::from_path(at("one/sensitivity.csv")).unwrap();
@@ -145,7 +145,7 @@ fn a_study_says_what_each_value_does_goes_on_where_it_was_and_hangs_on_no_number
     // A part is the same alone; what it shares with the whole study is taken from there.
     let told = succeed(folder.path(), "sensitivity --design design.toml --only levels --jobs 3 --out one");
     assert!(told.contains("going on"), "{told}");
-    let part = fs::read_to_string(at("one/DEVIATIONS.md")).unwrap();
+    let part = fs::read_to_string(at("one/sensitivity.md")).unwrap();
     assert!(part.contains("| levels = 3 |") && !part.contains("Gains"));
     // Half of the checkpoints are lost.
     let parts = fs::read_dir(at("one/checkpoints/parts")).unwrap().map(Result::unwrap);
@@ -153,7 +153,7 @@ fn a_study_says_what_each_value_does_goes_on_where_it_was_and_hangs_on_no_number
     succeed(folder.path(), "sensitivity --design design.toml --jobs 3 --out one");
     assert_eq!(files(&at("one")), one);
 
-    fs::remove_file(at("one/DEVIATIONS.md")).unwrap();
+    fs::remove_file(at("one/sensitivity.md")).unwrap();
     fs::remove_dir_all(at("one/figures")).unwrap();
     succeed(folder.path(), "plot one");
     assert_eq!(files(&at("one")), one);

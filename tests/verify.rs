@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
-use bodyschema::record::npy;
+use bodyschema::files::npy;
 
 /// Experiment 1 in a second or two.
 const SMALL: &str = "

@@ -2,17 +2,15 @@
 
 #![no_main]
 
-use bodyschema::baselines::{Clustering, cluster};
-use bodyschema::body_map::{BodyMap, ClassicalScaling};
-use bodyschema::distance::{Distances, information_metric};
-use bodyschema::quantise::quantise;
-use bodyschema::record::npy;
-use bodyschema::schema::{Model, infer};
-use bodyschema::settings::{Quantise, Scheme, Settings};
-use bodyschema::smacof::{Fit, smacof};
-use bodyschema::streams::stream;
+use bodyschema::files::npy;
+use bodyschema::numerics::rng::stream;
+use bodyschema::settings::Settings;
+use bodyschema::stages::baselines::{Clustering, cluster};
+use bodyschema::stages::body_map::{BodyMap, ClassicalScaling, Fit, smacof};
+use bodyschema::stages::distance::{Distances, information_metric};
+use bodyschema::stages::quantise::{Quantise, Scheme, quantise};
+use bodyschema::stages::schema::{Model, infer};
 use bodyschema_fuzz::{accepted, file};
-use indicatif::ProgressBar;
 use libfuzzer_sys::fuzz_target;
 
 /// Most sensors and dimensions that go on.
@@ -40,7 +38,7 @@ fuzz_target!(|data: &[u8]| {
         map(&distances);
     }
     if let Some(body_map) = accepted(npy::read_body_map(&path)) {
-        draw(&body_map);
+        infer_and_cluster(&body_map);
     }
 });
 
@@ -54,20 +52,20 @@ fn map(distances: &Distances) {
                 assert!(improved.coordinates.iter().all(|x| x.is_finite()), "{found:?}");
                 assert!(found.stress <= found.start + 1e-9, "{found:?}");
             }
-            draw(&body_map);
+            infer_and_cluster(&body_map);
         }
     }
 }
 
-fn draw(body_map: &BodyMap) {
+fn infer_and_cluster(body_map: &BodyMap) {
     assert!(body_map.coordinates.iter().all(|x| x.is_finite()));
     let mut settings = Settings::paper().schema;
     (settings.components, settings.chains, settings.sweeps) = (3, 1, 2);
     for model in Model::ALL {
         if body_map.dims <= FEW {
-            let samples = accepted(infer(body_map, model, &settings, 1, 1, &ProgressBar::hidden()));
-            for sample in samples.into_iter().flatten() {
-                assert!(sample.log_posterior.is_some_and(f64::is_finite), "{sample:?}");
+            let draws = accepted(infer(body_map, model, &settings, 1, 1, &|| ()));
+            for draw in draws.into_iter().flatten() {
+                assert!(draw.log_posterior.is_some_and(f64::is_finite), "{draw:?}");
             }
         }
     }

@@ -5,18 +5,18 @@
 
 use std::fs;
 
-use bodyschema::{claims, plot, report};
+use bodyschema::internals::{figures, page, plot};
 use bodyschema_fuzz::{accepted, file, folder};
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|data: &[u8]| {
     let Some((&number, rest)) = data.split_first() else { return };
-    let figures = claims::figures();
+    let figures = figures();
     match figures.get(usize::from(number) % (figures.len() + 1)) {
         Some(figure) => {
             let table = file(&format!("figures/{}.csv", figure.name), rest);
-            if let Some(drawn) = accepted(plot::draw(&folder().join("figures"))) {
-                assert_eq!(drawn, [format!("{}.svg", figure.name)]);
+            if let Some(pictures) = accepted(plot::render(&folder().join("figures"))) {
+                assert_eq!(pictures, [format!("{}.svg", figure.name)]);
                 let picture = table.with_extension("svg");
                 let svg = fs::read_to_string(&picture).expect("it was drawn");
                 assert!(svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>"));
@@ -28,7 +28,7 @@ fuzz_target!(|data: &[u8]| {
             let mut files = rest.splitn(2, |byte| *byte == 0);
             file("claims.csv", files.next().unwrap_or_default());
             file("manifest.json", files.next().unwrap_or_default());
-            accepted(report::write(folder()));
+            accepted(page::write(folder()));
         }
     }
 });

@@ -2,10 +2,10 @@
 
 #![no_main]
 
-use bodyschema::evaluate::{parts, score};
-use bodyschema::record::tables::read_truth;
-use bodyschema::schema::Sample;
-use bodyschema::schema::tree::Edge;
+use bodyschema::stages::evaluate::{parts, score};
+use bodyschema::files::tables::read_truth;
+use bodyschema::stages::schema::Draw;
+use bodyschema::stages::tree::Edge;
 use bodyschema_fuzz::{accepted, file};
 use libfuzzer_sys::fuzz_target;
 
@@ -19,7 +19,7 @@ fuzz_target!(|data: &[u8]| {
 
     assert_eq!((truth.labels.len(), truth.tree.len() + 1), (sensors, truth.parts()));
     let edge = |&(child, parent): &(usize, usize)| Edge { child, parent };
-    let sample = Sample {
+    let draw = Draw {
         chain: 0,
         sweep: 1,
         labels: truth.labels.clone(),
@@ -28,8 +28,8 @@ fuzz_target!(|data: &[u8]| {
         log_posterior: None,
     };
     // No estimate has a part of one sensor, so that its edges match none.
-    if parts(&sample.labels) == truth.parts() {
-        let score = score(&sample, &truth, 1.0);
+    if parts(&draw.labels) == truth.parts() {
+        let score = score(&draw, &truth, 1.0);
         assert!(score.eligible && score.tree_correct, "the truth is right: {score:?}");
     }
 });

@@ -2,7 +2,7 @@
 
 #![no_main]
 
-use bodyschema::verify::{Outcome, against_manifest, against_reference};
+use bodyschema::internals::verify::{Outcome, against_manifest, against_reference};
 use bodyschema_fuzz::{accepted, file, folder};
 use libfuzzer_sys::fuzz_target;
 

@@ -1,9 +1,8 @@
 //! Settings → the same settings with sizes that a test can afford, and every stage run with them.
 
-use bodyschema::pipeline::{StageError, cluster_and_score, feel, infer_and_score, map_felt};
-use bodyschema::schema::Model;
+use bodyschema::pipeline::{Condition, StageError, cluster_and_score, feel, infer_and_score, map_felt};
 use bodyschema::settings::Settings;
-use indicatif::ProgressBar;
+use bodyschema::stages::schema::Model;
 
 /// Most physics steps of a run.
 const STEPS: usize = 400;
@@ -11,8 +10,8 @@ const STEPS: usize = 400;
 /// Cuts down sizes and times and nothing else: what the physics engine and the mixture compute with stays.
 pub fn bounded(settings: &Settings) -> Settings {
     let mut settings = settings.clone();
-    let steps = settings.steps_per_sample().min(STEPS / 2);
-    let samples = settings.samples().min(STEPS / steps);
+    let steps = settings.physics.steps_per_sample(settings.sense.interval).min(STEPS / 2);
+    let samples = settings.physics.samples(settings.sense.interval).min(STEPS / steps);
     settings.sense.interval = steps as f64 * settings.physics.step;
     settings.physics.duration = samples as f64 * settings.sense.interval;
     settings.motion.epoch = settings.motion.epoch.min(STEPS / 8);
@@ -40,11 +39,12 @@ pub fn bounded(settings: &Settings) -> Settings {
 /// If a stage fails.
 pub fn run_every_stage(settings: &Settings) -> Result<(), StageError> {
     let dimension = settings.experiment.dimensions[0];
-    let felt = feel(settings, 1, &ProgressBar::hidden())?;
+    let felt = feel(settings, 1, &|| ())?;
     let mapped = map_felt(&felt, settings, &[dimension])?;
     assert!(mapped.distances.values.iter().all(|distance| (0.0..=16.0).contains(distance)));
     for model in Model::ALL {
-        let found = infer_and_score(&mapped.body, dimension, model, settings, 1, &ProgressBar::hidden())?;
+        let condition = Condition { model, coordination: settings.motion.coordination, dimension };
+        let found = infer_and_score(&mapped.body, condition, settings, 1, &|| ())?;
         assert!(found.records.len() >= settings.schema.chains);
         for record in found.records {
             assert!((-1.0..=1.0 + 1e-9).contains(&record.ari), "{record:?}");

@@ -1,11 +1,11 @@
 //! Body maps drawn from the generative model of the DPGMM-LJ itself, with a known tree.
 
-use bodyschema::body_map::BodyMap;
-use bodyschema::evaluate::Truth;
-use bodyschema::schema::gaussian::{Gaussian, NormalInverseWishart, standard_normal};
-use bodyschema::schema::joints::collapsed_cost;
-use bodyschema::schema::tree::prim;
-use bodyschema::streams::Stream;
+use bodyschema::numerics::rng::Stream;
+use bodyschema::stages::body_map::BodyMap;
+use bodyschema::stages::mixture::{Gaussian, NormalInverseWishart, standard_normal};
+use bodyschema::stages::schema::collapsed_cost;
+use bodyschema::stages::tree::Truth;
+use bodyschema::stages::tree::prim;
 use nalgebra::{DMatrix, DVector};
 use rand::RngExt;
 

@@ -1,0 +1,113 @@
+//! Published claims and an experiment's records → a verdict on each claim.
+//!
+//! What the paper says stands in `reproduce/published.toml`, with the range that counts as reproduced; the
+//! program only measures. A claim over several conditions holds if it holds at each that has a sample.
+
+use super::measure::{Evidence, measure};
+use super::published::{Claim, Experiment, Measure, claims};
+use super::statistics::Estimate;
+
+/// What the run says of a claim.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Verdict {
+    /// Every value lies in the range.
+    Reproduced,
+    /// Some value does not.
+    NotReproduced,
+    /// There is no value.
+    NotTestable,
+}
+
+impl Verdict {
+    /// As written in tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Reproduced => "reproduced",
+            Self::NotReproduced => "not reproduced",
+            Self::NotTestable => "not testable",
+        }
+    }
+}
+
+/// A claim, its worst value, and its verdict.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Judged {
+    /// The claim.
+    pub claim: Claim,
+    /// The value that lies farthest towards the outside of the range.
+    pub reproduced: Estimate,
+    /// Where that value was found.
+    pub place: String,
+    /// The verdict.
+    pub verdict: Verdict,
+    /// The same of the draws of highest log posterior, where the claim counts draws: an extension.
+    pub best: Option<(Estimate, String)>,
+}
+
+/// Judges the claims of one experiment.
+pub fn judge(experiment: Experiment, evidence: &Evidence) -> Vec<Judged> {
+    let best = Evidence { conditions: evidence.conditions.best(), baselines: Vec::new() };
+    let claims = claims().into_iter().filter(|claim| claim.experiments.contains(&experiment));
+    claims.map(|claim| judge_one(claim, evidence, &best)).collect()
+}
+
+fn judge_one(claim: Claim, evidence: &Evidence, best: &Evidence) -> Judged {
+    let (reproduced, place, verdict) = worst(&claim, &measure(&claim.measure, evidence));
+    let best = claim.measure.counts_draws().then(|| {
+        let (estimate, place, _) = worst(&claim, &measure(&claim.measure, best));
+        (estimate, place)
+    });
+    Judged { claim, reproduced, place, verdict, best }
+}
+
+/// Of all values that a claim is about, the one that lies farthest towards the outside of its range.
+fn worst(claim: &Claim, measured: &[(String, Estimate)]) -> (Estimate, String, Verdict) {
+    let accept = claim.accept.unwrap_or_default();
+    // A bound at the end of a share's scale excludes nothing, so no value is near to it.
+    let low = if accept.0 == 0.0 { f64::NEG_INFINITY } else { accept.0 };
+    let high = if accept.1 == 1.0 { f64::INFINITY } else { accept.1 };
+    let mut untested = Vec::new();
+    let mut worst: Option<(f64, &Estimate, &str)> = None;
+    for (place, estimate) in measured {
+        match estimate.value {
+            None => untested.push(place.as_str()),
+            Some(value) => {
+                // How far outside the range; negative inside.
+                let outside = (low - value).max(value - high);
+                if worst.is_none_or(|(most, ..)| outside > most) {
+                    worst = Some((outside, estimate, place));
+                }
+            }
+        }
+    }
+    match worst {
+        None => {
+            let reason = match &claim.measure {
+                Measure::Nothing { reason } => reason.clone(),
+                _ if untested.is_empty() => "the run has no such condition".to_owned(),
+                _ => no_sample(&untested),
+            };
+            (Estimate::default(), reason, Verdict::NotTestable)
+        }
+        Some((outside, estimate, place)) => {
+            let several = measured.len() > 1;
+            let missing =
+                if untested.is_empty() { String::new() } else { format!("; {}", no_sample(&untested)) };
+            let place = format!("{}{place}{missing}", if several { "worst: " } else { "" });
+            (*estimate, place, if outside <= 0.0 { Verdict::Reproduced } else { Verdict::NotReproduced })
+        }
+    }
+}
+
+/// Names the first few conditions without a sample.
+fn no_sample(places: &[&str]) -> String {
+    const NAMED: usize = 4;
+    let named = places[..places.len().min(NAMED)].join(", ");
+    match places.len().saturating_sub(NAMED) {
+        0 => format!("no sample: {named}"),
+        more => format!("no sample: {named} and {more} more"),
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,180 @@
+//! Records of an experiment → estimates for each of its conditions, with intervals over simulations.
+
+use super::statistics::{Estimate, Resamples, mean, rate, spread};
+use crate::numerics::rng::stream;
+use crate::pipeline::{BaselineRecord, Condition, Record};
+use crate::stages::baselines::Clustering;
+
+/// All evaluated draws of an experiment.
+///
+/// Draws of one simulation share a body map, so that the simulation is the unit of every interval. With one
+/// simulation it is the chain, and every statement holds for that simulation alone.
+#[derive(Debug, Clone)]
+pub struct Conditions {
+    records: Vec<Record>,
+    simulations: usize,
+    resamples: Resamples,
+}
+
+impl Conditions {
+    /// Takes the records of `simulations` simulations; the bootstrap's random numbers derive from `seed`.
+    pub fn new(records: Vec<Record>, simulations: usize, seed: u64) -> Self {
+        let resamples = Resamples::new(simulations, &mut stream(seed, 0, "bootstrap", 0));
+        Self { records, simulations, resamples }
+    }
+
+    /// An extension of the paper's way of counting: of each condition and simulation only the draw of
+    /// highest log posterior, whose tree counts whether or not its parts are right.
+    pub fn best(&self) -> Self {
+        let mut best: Vec<Record> = Vec::new();
+        for record in &self.records {
+            let same = |other: &&mut Record| {
+                (other.simulation, other.condition()) == (record.simulation, record.condition())
+            };
+            match best.iter_mut().rev().find(same) {
+                None => best.push(Record { eligible: true, ..*record }),
+                Some(kept) if record.log_posterior > kept.log_posterior => {
+                    *kept = Record { eligible: true, ..*record }
+                }
+                Some(_) => {}
+            }
+        }
+        Self { records: best, simulations: self.simulations, resamples: self.resamples.clone() }
+    }
+
+    /// All conditions that were run, by mixture, then p, then d.
+    pub fn all(&self) -> Vec<Condition> {
+        let mut all: Vec<Condition> = Vec::new();
+        for record in &self.records {
+            if all.last() != Some(&record.condition()) {
+                all.push(record.condition());
+            }
+        }
+        all.sort_by(|a, b| {
+            (a.model, a.dimension)
+                .cmp(&(b.model, b.dimension))
+                .then(a.coordination.total_cmp(&b.coordination))
+        });
+        all.dedup();
+        all
+    }
+
+    /// The draws of one condition.
+    pub fn records(&self, condition: Condition) -> impl Iterator<Item = &Record> + Clone {
+        self.records.iter().filter(move |record| record.condition() == condition)
+    }
+
+    /// A value of each draw of one condition, by simulation; draws without the value are left out.
+    pub fn by_simulation(
+        &self,
+        condition: Condition,
+        value: impl Fn(&Record) -> Option<f64>,
+    ) -> Vec<Vec<f64>> {
+        let mut groups = vec![Vec::new(); self.simulations];
+        for record in self.records(condition) {
+            groups[record.simulation - 1].extend(value(record));
+        }
+        groups
+    }
+
+    /// Adjusted Rand indices of one condition.
+    pub fn aris(&self, condition: Condition) -> Vec<f64> {
+        self.records(condition).map(|record| record.ari).collect()
+    }
+
+    /// Mean number of parts.
+    pub fn mean_parts(&self, condition: Condition) -> Estimate {
+        self.mean(&self.by_simulation(condition, |record| Some(record.parts as f64)))
+    }
+
+    /// Mean adjusted Rand index, whose interval ends at 1, the highest that there is.
+    pub fn mean_ari(&self, condition: Condition) -> Estimate {
+        let mean = self.mean(&self.by_simulation(condition, |record| Some(record.ari)));
+        Estimate { interval: mean.interval.map(|(low, high)| (low, high.min(1.0))), ..mean }
+    }
+
+    /// Share of right trees among the eligible draws of some conditions together.
+    pub fn tree_rate(&self, conditions: &[Condition]) -> Estimate {
+        let mut groups = vec![Vec::new(); self.simulations];
+        for &condition in conditions {
+            for (group, outcomes) in groups.iter_mut().zip(self.trees(condition)) {
+                group.extend(outcomes);
+            }
+        }
+        self.rate(&groups)
+    }
+
+    /// 1 for a right tree and 0 for a wrong one, of each eligible draw of one condition, by simulation.
+    pub fn trees(&self, condition: Condition) -> Vec<Vec<f64>> {
+        self.by_simulation(condition, |record| {
+            record.eligible.then(|| f64::from(u8::from(record.tree_correct)))
+        })
+    }
+
+    /// Mean of values, by simulation.
+    pub fn mean(&self, groups: &[Vec<f64>]) -> Estimate {
+        self.clustered(mean(&groups.concat()), groups)
+    }
+
+    /// Rate of ones among ones and zeros, by simulation.
+    pub fn rate(&self, groups: &[Vec<f64>]) -> Estimate {
+        let all = groups.concat();
+        self.clustered(rate(ones(&all), all.len()), groups)
+    }
+
+    /// The difference of the means, or of the rates if `rates`, of `groups` of these conditions and `others` of
+    /// conditions of the same simulations: others minus groups.
+    pub fn difference(&self, groups: &[Vec<f64>], others: &[Vec<f64>], rates: bool) -> Estimate {
+        let pooled = |groups: &[Vec<f64>]| {
+            let all = groups.concat();
+            if rates { rate(ones(&all), all.len()) } else { mean(&all) }
+        };
+        let (first, second) = (totals(groups), totals(others));
+        self.resamples.difference((pooled(groups), &first), (pooled(others), &second))
+    }
+
+    fn clustered(&self, pooled: Estimate, groups: &[Vec<f64>]) -> Estimate {
+        self.resamples.clustered(pooled, &totals(groups))
+    }
+}
+
+/// Number of ones.
+fn ones(outcomes: &[f64]) -> usize {
+    outcomes.iter().filter(|&&outcome| outcome == 1.0).count()
+}
+
+/// Sum and number of the values of each simulation.
+fn totals(groups: &[Vec<f64>]) -> Vec<(f64, usize)> {
+    groups.iter().map(|values| (values.iter().sum(), values.len())).collect()
+}
+
+/// Mean ARI over simulations of a clustering that is told the number of clusters.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BaselineEstimate {
+    /// The clustering.
+    pub method: Clustering,
+    /// K.
+    pub clusters: usize,
+    /// p.
+    pub coordination: f64,
+    /// d.
+    pub dimension: usize,
+    /// Mean ARI; a simulation gives one.
+    pub ari: Estimate,
+}
+
+/// Means over simulations of records that are all of one p, by method, K and d.
+pub fn baseline_estimates(records: &[BaselineRecord]) -> Vec<BaselineEstimate> {
+    let place = |record: &BaselineRecord| (record.method, record.clusters, record.dimension);
+    let mut sorted = records.to_vec();
+    sorted.sort_by_key(place);
+    sorted
+        .chunk_by(|a, b| place(a) == place(b))
+        .map(|group| {
+            let aris: Vec<f64> = group.iter().map(|record| record.ari).collect();
+            let BaselineRecord { coordination, dimension, method, clusters, .. } = group[0];
+            let ari = Estimate { simulations: aris.len(), spread: spread(&aris), ..mean(&aris) };
+            BaselineEstimate { method, clusters, coordination, dimension, ari }
+        })
+        .collect()
+}

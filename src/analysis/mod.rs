@@ -1,0 +1,8 @@
+//! Turn the draws of an experiment into estimates with intervals, and these into verdicts on the paper's claims.
+
+pub mod cells;
+pub mod claims;
+pub mod conditions;
+pub mod measure;
+pub mod published;
+pub mod statistics;

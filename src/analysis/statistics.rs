@@ -1,0 +1,354 @@
+//! Counts and samples → rates, means, their intervals, and tests.
+
+use rand::{Rng, RngExt};
+use statrs::distribution::{ChiSquared, ContinuousCDF, Normal, StudentsT};
+use statrs::stats_tests::Alternative;
+use statrs::stats_tests::mannwhitneyu::{MannWhitneyUMethod, mannwhitneyu};
+
+/// A value with its 95 % interval, and how many samples it rests on.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Estimate {
+    /// The value; none where there is no sample ("0 of 0, no rate").
+    pub value: Option<f64>,
+    /// Number of samples.
+    pub n: usize,
+    /// Lower and upper end of the 95 % interval, where there is one.
+    pub interval: Option<(f64, f64)>,
+    /// Number of simulations that the samples are from.
+    pub simulations: usize,
+    /// Lowest and highest value of a single simulation, where there are several.
+    pub spread: Option<(f64, f64)>,
+}
+
+impl Estimate {
+    /// A value without an interval.
+    pub fn bare(value: Option<f64>, n: usize) -> Self {
+        Self { value, n, ..Self::default() }
+    }
+}
+
+/// The 97.5 % quantile of the standard normal distribution.
+const Z: f64 = 1.959_963_984_540_054;
+
+/// `successes` of `n` independent trials, with Wilson's (1927) score interval.
+pub fn rate(successes: usize, n: usize) -> Estimate {
+    Estimate {
+        value: (n > 0).then(|| successes as f64 / n as f64),
+        n,
+        interval: (n > 0).then(|| wilson(successes, n)),
+        ..Estimate::default()
+    }
+}
+
+fn wilson(successes: usize, n: usize) -> (f64, f64) {
+    let (k, n) = (successes as f64, n as f64);
+    let p = k / n;
+    let centre = (p + Z * Z / (2.0 * n)) / (1.0 + Z * Z / n);
+    let half = Z / (1.0 + Z * Z / n) * (p * (1.0 - p) / n + Z * Z / (4.0 * n * n)).sqrt();
+    // At the ends the interval touches 0 or 1 exactly; rounding must not push it past or short.
+    let low = if successes == 0 { 0.0 } else { centre - half };
+    let high = if k == n { 1.0 } else { centre + half };
+    (low, high)
+}
+
+/// 95 % interval of the difference of two independent rates: of a reproduced one, `value` with its
+/// `interval`, minus a published one of (successes, n), n > 0. Newcombe's (1998) hybrid score interval, his
+/// method 10, which takes the interval of each rate as it is.
+pub fn rate_difference(value: f64, interval: (f64, f64), published: (usize, usize)) -> (f64, f64) {
+    let (low, high) = wilson(published.0, published.1);
+    let other = published.0 as f64 / published.1 as f64;
+    (
+        value - other - (value - interval.0).hypot(high - other),
+        value - other + (interval.1 - value).hypot(other - low),
+    )
+}
+
+/// The mean of independent values, with Student's 95 % interval (from two values on).
+pub fn mean(values: &[f64]) -> Estimate {
+    let n = values.len();
+    let mean = values.iter().sum::<f64>() / n.max(1) as f64;
+    let variance = values.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / n.saturating_sub(1).max(1) as f64;
+    let half = (variance / n.max(1) as f64).sqrt();
+    let interval = (n > 1).then(|| student(n) * half).map(|half| (mean - half, mean + half));
+    Estimate { value: (n > 0).then_some(mean), n, interval, ..Estimate::default() }
+}
+
+/// The 97.5 % quantile of Student's t with n − 1 degrees of freedom.
+fn student(n: usize) -> f64 {
+    StudentsT::new(0.0, 1.0, (n - 1) as f64).expect("n > 1").inverse_cdf(0.975)
+}
+
+/// The lowest and the highest of several values.
+pub fn spread(values: &[f64]) -> Option<(f64, f64)> {
+    let least = values.iter().copied().fold(f64::INFINITY, f64::min);
+    let most = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    (values.len() > 1).then_some((least, most))
+}
+
+/// The quantile of `sorted` values, not empty, with linear interpolation (NumPy's default).
+pub fn quantile(sorted: &[f64], share: f64) -> f64 {
+    let at = share * (sorted.len() - 1) as f64;
+    let (below, above) = (sorted[at.floor() as usize], sorted[at.ceil() as usize]);
+    below + (above - below) * at.fract()
+}
+
+/// Draws of simulations with replacement, the same for every estimate of an experiment: the bootstrap over
+/// simulations, for samples of one simulation share its body map and are not independent.
+#[derive(Debug, Clone)]
+pub struct Resamples {
+    /// How often each simulation was drawn, a row a resample.
+    multiplicities: Vec<Vec<f64>>,
+}
+
+impl Resamples {
+    /// Of so many simulations.
+    pub fn new(simulations: usize, rng: &mut impl Rng) -> Self {
+        const RESAMPLES: usize = 10_000;
+        let draw = |_| {
+            let mut row = vec![0.0; simulations];
+            (0..simulations).for_each(|_| row[rng.random_range(0..simulations)] += 1.0);
+            row
+        };
+        Self { multiplicities: (0..RESAMPLES).map(draw).collect() }
+    }
+
+    /// `pooled`, an estimate over the samples of all simulations, with what the simulations differ by:
+    /// `groups` holds the sum and the number of samples of each.
+    ///
+    /// The interval is the expanded percentile interval of Hesterberg (2015), which makes up for what a
+    /// percentile interval lacks with few simulations; and it is never narrower than the one of `pooled`,
+    /// which would hold if all samples were independent.
+    ///
+    /// # Panics
+    /// If there are not as many groups as simulations.
+    pub fn clustered(&self, pooled: Estimate, groups: &[(f64, usize)]) -> Estimate {
+        let values: Vec<f64> =
+            groups.iter().filter(|group| group.1 > 0).map(|group| group.0 / group.1 as f64).collect();
+        let simulations = values.len();
+        // Samples of simulations of their own are independent: their interval stands.
+        let alone = simulations < 2 || groups.iter().all(|group| group.1 < 2);
+        let Some((low, high)) = pooled.interval.filter(|_| !alone) else {
+            return Estimate { simulations, ..pooled };
+        };
+        let mut means: Vec<f64> =
+            self.multiplicities.iter().filter_map(|row| resampled(row, groups)).collect();
+        means.sort_by(f64::total_cmp);
+        let tail = tail(simulations);
+        Estimate {
+            interval: Some((low.min(quantile(&means, tail)), high.max(quantile(&means, 1.0 - tail)))),
+            simulations,
+            spread: spread(&values),
+            ..pooled
+        }
+    }
+
+    /// The difference of two estimates over the same simulations, the second minus the first, each with the sum and
+    /// the number of samples of each simulation.
+    ///
+    /// Simulations are drawn in pairs, since they share what the two have in common: the interval is the expanded
+    /// percentile interval of the differences. It is never narrower than that of two estimates whose samples are all
+    /// independent, by Zou & Donner (2008) from the intervals given. None where either has no value.
+    pub fn difference(
+        &self,
+        (first, groups): (Estimate, &[(f64, usize)]),
+        (second, others): (Estimate, &[(f64, usize)]),
+    ) -> Estimate {
+        let (Some(a), Some(b)) = (first.value, second.value) else { return Estimate::default() };
+        let simulations = groups.iter().zip(others).filter(|(one, other)| one.1 > 0 && other.1 > 0).count();
+        let difference = Estimate { value: Some(b - a), n: second.n, simulations, ..Estimate::default() };
+        let Some(((a_low, a_high), (b_low, b_high))) = first.interval.zip(second.interval) else {
+            return difference;
+        };
+        let (mut low, mut high) =
+            (b - a - (b - b_low).hypot(a_high - a), b - a + (b_high - b).hypot(a - a_low));
+        if simulations > 1 {
+            let pair = |row: &Vec<f64>| Some(resampled(row, others)? - resampled(row, groups)?);
+            let mut differences: Vec<f64> = self.multiplicities.iter().filter_map(pair).collect();
+            differences.sort_by(f64::total_cmp);
+            let tail = tail(simulations);
+            (low, high) =
+                (low.min(quantile(&differences, tail)), high.max(quantile(&differences, 1.0 - tail)));
+        }
+        Estimate { interval: Some((low, high)), ..difference }
+    }
+}
+
+/// The mean of a resample of the simulations; none if it has no sample.
+fn resampled(multiplicities: &[f64], groups: &[(f64, usize)]) -> Option<f64> {
+    assert_eq!(multiplicities.len(), groups.len(), "a group for each simulation");
+    let (sum, n) = multiplicities
+        .iter()
+        .zip(groups)
+        .fold((0.0, 0.0), |(sum, n), (times, group)| (sum + times * group.0, n + times * group.1 as f64));
+    (n > 0.0).then(|| sum / n)
+}
+
+/// The tail of the expanded percentile interval over so many simulations, more than one.
+fn tail(simulations: usize) -> f64 {
+    let widened = (simulations as f64 / (simulations - 1) as f64).sqrt() * student(simulations);
+    Normal::standard().cdf(-widened)
+}
+
+/// Two-sided p value of the Mann–Whitney U test, by the normal approximation with corrections for ties
+/// and continuity, as SciPy's `mannwhitneyu(method="asymptotic")`; 1 where nothing differs or a group is empty.
+pub fn mann_whitney(first: &[f64], second: &[f64]) -> f64 {
+    const METHOD: MannWhitneyUMethod = MannWhitneyUMethod::AsymptoticInclContinuityCorrection;
+    mannwhitneyu(first, second, METHOD, Alternative::TwoSided).map_or(1.0, |(_, p_value)| p_value)
+}
+
+/// p value of the Kruskal–Wallis test that all groups have one distribution, with the correction for ties,
+/// as SciPy's `kruskal`; none with fewer than two groups, or where a group is empty, and 1 where nothing
+/// differs.
+pub fn kruskal_wallis(groups: &[Vec<f64>]) -> Option<f64> {
+    if groups.len() < 2 || groups.iter().any(Vec::is_empty) {
+        return None;
+    }
+    let all: Vec<(f64, usize)> = groups
+        .iter()
+        .enumerate()
+        .flat_map(|(group, values)| values.iter().map(move |&value| (value, group)))
+        .collect();
+    let (ranks, ties) = rank_sums(all, groups.len());
+    let n = groups.iter().map(Vec::len).sum::<usize>() as f64;
+    let between: f64 = ranks.iter().zip(groups).map(|(sum, values)| sum * sum / values.len() as f64).sum();
+    let untied = 1.0 - ties / (n * n * n - n);
+    if untied.is_nan() || untied <= 0.0 {
+        return Some(1.0);
+    }
+    let statistic = (12.0 / (n * (n + 1.0)) * between - 3.0 * (n + 1.0)) / untied;
+    let freedom = (groups.len() - 1) as f64;
+    Some(ChiSquared::new(freedom).expect("at least two groups").sf(statistic))
+}
+
+/// The sum of ranks of each group, and Σ (t³ − t) over ties of t values.
+fn rank_sums(mut all: Vec<(f64, usize)>, groups: usize) -> (Vec<f64>, f64) {
+    all.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let (mut sums, mut ties, mut before) = (vec![0.0; groups], 0.0, 0.0);
+    for tied in all.chunk_by(|a, b| a.0 == b.0) {
+        let size = tied.len() as f64;
+        tied.iter().for_each(|(_, group)| sums[*group] += before + (size + 1.0) / 2.0);
+        ties += size.powi(3) - size;
+        before += size;
+    }
+    (sums, ties)
+}
+
+/// The smallest of several p values after Holm's (1979) correction, which is Bonferroni's for it.
+pub fn smallest_adjusted(p_values: &[f64]) -> Option<f64> {
+    let smallest = p_values.iter().copied().reduce(f64::min)?;
+    Some((smallest * p_values.len() as f64).min(1.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::RngExt;
+
+    use super::*;
+    use crate::numerics::rng::stream;
+
+    fn close(found: f64, expected: f64) {
+        assert!((found - expected).abs() < 5e-5, "{found} is not {expected}");
+    }
+
+    #[test]
+    fn no_sample_has_no_rate() {
+        assert_eq!(rate(0, 0), Estimate::default());
+    }
+
+    #[test]
+    fn mann_whitney_knows_equal_shifted_and_tied_samples() {
+        let low: Vec<f64> = (0..20).map(f64::from).collect();
+        let high: Vec<f64> = low.iter().map(|x| x + 30.0).collect();
+        assert_eq!(mann_whitney(&low, &low), 1.0);
+        assert!(mann_whitney(&low, &high) < 1e-6);
+        assert_eq!(mann_whitney(&[1.0; 5], &[1.0; 7]), 1.0);
+        assert_eq!(mann_whitney(&[], &[1.0]), 1.0);
+    }
+
+    #[test]
+    fn means_and_corrections() {
+        let estimate = mean(&[1.0, 2.0, 3.0, 4.0]);
+        assert_eq!((estimate.value, estimate.n), (Some(2.5), 4));
+        // 3.182446 is the 97.5 % quantile of t with three degrees of freedom.
+        close(estimate.interval.unwrap().1, 2.5 + 3.182446 * (5.0_f64 / 3.0 / 4.0).sqrt());
+        assert_eq!(mean(&[]).value, None);
+        assert_eq!(smallest_adjusted(&[0.5, 0.01, 0.2]), Some(0.03));
+        assert_eq!(smallest_adjusted(&[0.6, 0.9]), Some(1.0));
+        assert_eq!(smallest_adjusted(&[]), None);
+    }
+
+    #[test]
+    fn simulations_that_differ_widen_the_interval_and_equal_ones_do_not_narrow_it() {
+        let resamples = Resamples::new(5, &mut stream(1, 1, "bootstrap", 0));
+        let alike = [(9.0, 10); 5];
+        let pooled = rate(45, 50);
+        let same = resamples.clustered(pooled, &alike);
+        assert_eq!((same.interval, same.spread, same.simulations), (pooled.interval, Some((0.9, 0.9)), 5));
+        let unlike =
+            resamples.clustered(pooled, &[(10.0, 10), (10.0, 10), (10.0, 10), (10.0, 10), (5.0, 10)]);
+        let (low, high) = unlike.interval.unwrap();
+        assert!(low < 0.7 && high == 1.0, "{low} {high}");
+        assert_eq!(unlike.spread, Some((0.5, 1.0)));
+        // Four simulations without an eligible sample leave one, whose samples are all there is.
+        let alone = resamples.clustered(rate(9, 10), &[(9.0, 10), (0.0, 0), (0.0, 0), (0.0, 0), (0.0, 0)]);
+        assert_eq!((alone.interval, alone.spread, alone.simulations), (rate(9, 10).interval, None, 1));
+        let single = resamples.clustered(rate(3, 5), &[(1.0, 1), (0.0, 1), (1.0, 1), (1.0, 1), (0.0, 1)]);
+        assert_eq!((single.interval, single.spread, single.simulations), (rate(3, 5).interval, None, 5));
+    }
+
+    #[test]
+    fn a_difference_is_paired_and_never_narrower_than_its_samples_allow() {
+        let resamples = Resamples::new(5, &mut stream(1, 1, "bootstrap", 0));
+        let groups = |rates: [f64; 5]| rates.map(|rate| (10.0 * rate, 10));
+        let of = |groups: &[(f64, usize)]| rate(groups.iter().map(|group| group.0).sum::<f64>() as usize, 50);
+        let between = |first: [f64; 5], second: [f64; 5]| {
+            let (first, second) = (groups(first), groups(second));
+            let found = resamples.difference((of(&first), &first), (of(&second), &second));
+            (found.value.unwrap(), found.interval.unwrap())
+        };
+        // Bodies that differ much from each other, and all by the same between the two.
+        let (paired, (low, high)) = between([0.0, 0.2, 0.5, 0.7, 0.9], [0.1, 0.3, 0.6, 0.8, 1.0]);
+        let (_, (unpaired_low, _)) = between([0.0, 0.2, 0.5, 0.7, 0.9], [1.0, 0.8, 0.6, 0.3, 0.1]);
+        assert!((paired - 0.1).abs() < 1e-12 && low < 0.1 && high > 0.1);
+        assert!(unpaired_low < low - 0.3, "{unpaired_low} {low}");
+        // Nothing differs in any simulation, and yet fifty samples of each know no more than this.
+        let (none, (low, high)) = between([0.0; 5], [0.0; 5]);
+        assert_eq!(none, 0.0);
+        assert!((low + high).abs() < 1e-12 && (high - wilson(0, 50).1).abs() < 1e-12);
+        let lacking = resamples.difference((rate(0, 0), &[(0.0, 0); 5]), (rate(1, 5), &[(1.0, 1); 5]));
+        assert_eq!(lacking, Estimate::default());
+    }
+
+    #[test]
+    fn the_interval_over_simulations_covers_the_truth_where_the_pooled_one_does_not() {
+        // Bodies whose rate is uniform over [0, 1]; five of them, with 40 chains each.
+        let mut rng = stream(1, 1, "coverage", 0);
+        let resamples = Resamples::new(5, &mut rng);
+        let (mut clustered, mut pooled, runs) = (0, 0, 400);
+        for _ in 0..runs {
+            let groups: Vec<(f64, usize)> = (0..5).map(|_| (40.0 * rng.random::<f64>(), 40)).collect();
+            let plain = rate(groups.iter().map(|group| group.0).sum::<f64>().round() as usize, 200);
+            let covers = |estimate: Estimate| {
+                let (low, high) = estimate.interval.unwrap();
+                usize::from((low..=high).contains(&0.5))
+            };
+            pooled += covers(plain);
+            clustered += covers(resamples.clustered(plain, &groups));
+        }
+        assert!(clustered >= runs * 90 / 100, "{clustered} of {runs}");
+        assert!(pooled <= runs * 60 / 100, "the twin that pools: {pooled} of {runs}");
+    }
+
+    #[test]
+    fn kruskal_wallis_sees_a_shift_and_needs_two_groups() {
+        let low: Vec<f64> = (0..10).map(f64::from).collect();
+        let high: Vec<f64> = low.iter().map(|x| x + 20.0).collect();
+        assert!(kruskal_wallis(&[low.clone(), high, low.clone()]).unwrap() < 1e-3);
+        assert!(kruskal_wallis(&[low.clone(), low.clone()]).unwrap() > 0.9);
+        assert_eq!(kruskal_wallis(&[vec![1.0; 3], vec![1.0; 4]]), Some(1.0));
+        assert_eq!(
+            (kruskal_wallis(std::slice::from_ref(&low)), kruskal_wallis(&[low, vec![]])),
+            (None, None)
+        );
+    }
+}

@@ -1,0 +1,159 @@
+//! The subcommands that run experiments: reproduce, search, sensitivity.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use anyhow::{Result, ensure};
+use clap::Args;
+
+use super::options::{SettingsAndSeed, Threads, choice, paper, set, with_default};
+use super::output::say;
+use crate::analysis::claims::Verdict;
+use crate::analysis::published::Experiment;
+use crate::experiments::reproduce::{self, Run};
+use crate::experiments::{search, sensitivity};
+use crate::files::prepare_folder;
+use crate::report::claims_table;
+use crate::settings::read_toml;
+
+/// Runs a whole experiment and judges the paper's claims; exit status 0 if all are reproduced, 1 if some
+/// are not, 2 on trouble.
+///
+/// Writes into DIR: report.html (all of it in one page), claims.csv and claims.md (a row for each claim),
+/// figures/*.csv and *.svg (data and pictures of the paper's figures), samples.csv (a row for each draw),
+/// baselines.csv (a row for each clustering), simulation-N/ (distances, body maps, truth; in experiment 2
+/// p-P/simulation-N/ without distances), manifest.json and run.json. A run that was stopped goes on from what it
+/// finished.
+#[derive(Args)]
+pub struct Reproduce {
+    /// The experiment
+    #[arg(value_parser = choice::<Experiment>())]
+    experiment: Experiment,
+    /// A small run of under a minute that shows every part of the program working; its numbers are no replication
+    #[arg(long)]
+    quick: bool,
+    #[arg(long, value_name = "N",
+          help = with_default("Number of independent simulations", paper().experiment.simulations))]
+    simulations: Option<usize>,
+    #[command(flatten)]
+    common: SettingsAndSeed,
+    #[command(flatten)]
+    threads: Threads,
+    /// Folder to write to
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+}
+
+impl Reproduce {
+    /// Runs the subcommand.
+    pub fn run(self) -> Result<ExitCode> {
+        let mut settings = self.common.load(self.quick)?;
+        set(&mut settings.experiment.simulations, self.simulations);
+        settings.validate()?;
+        self.threads.apply()?;
+        let run = Run {
+            experiment: self.experiment,
+            settings: &settings,
+            settings_file: self.common.file.settings.as_deref(),
+            quick: self.quick,
+            out: &self.out,
+        };
+        let (largest, sensors) = (run.largest_dimension(), settings.sensors());
+        let setting = match self.experiment {
+            Experiment::Exp1 => "experiment.dimensions",
+            Experiment::Exp2 => "experiment.dimension",
+        };
+        ensure!(
+            largest < sensors,
+            "setting `{setting}` goes up to {largest}, but {sensors} sensors span fewer dimensions"
+        );
+        prepare_folder(&self.out)?;
+        let judged = reproduce::reproduce(&run)?;
+        say(format!("{}\n", reproduce::preamble(&run)))?;
+        say(format!("{}\n", claims_table::terminal_table(&judged)))?;
+        say(format!("All files are in {}; open report.html there.", self.out.display()))?;
+        for line in judged.iter().filter_map(claims_table::comparison) {
+            say(line)?;
+        }
+        let all = judged.iter().all(|judged| judged.verdict == Verdict::Reproduced);
+        Ok(ExitCode::from(u8::from(!all)))
+    }
+}
+
+/// Searches for settings under which the paper's claims hold together, by a score that is written down beforehand.
+///
+/// Reads a design (reproduce/search.toml explains one) and writes into DIR: search.md (rounds, and which claims
+/// hold together), scores.csv (a row for each candidate and round), credits.csv (a row for each of its claims), best.toml
+/// (the settings of the best candidate, for --settings) and checkpoints/, from which a search that was stopped goes on.
+#[derive(Args)]
+pub struct Search {
+    #[command(flatten)]
+    study: Study,
+}
+
+impl Search {
+    /// Runs the subcommand.
+    pub fn run(self) -> Result<ExitCode> {
+        self.study.threads.apply()?;
+        let (text, origin) = self.study.design((search::DESIGN, "reproduce/search.toml"))?;
+        let (design, out) = (search::Design::parse(&text, &origin)?, &self.study.out);
+        prepare_folder(out)?;
+        say(search::search(&design, out)?)?;
+        say(format!("All files are in {}.", out.display()))?;
+        Ok(ExitCode::SUCCESS)
+    }
+}
+
+/// Varies each setting that the paper leaves open around the default, and says how much each changes the results.
+///
+/// Reads a design (reproduce/sensitivity.toml explains one) and writes into DIR: sensitivity.md (a page for people),
+/// figures/*.svg (a picture for each setting), sensitivity.csv (a row for each value, condition and measure),
+/// design.toml, and checkpoints/, from which a study that was stopped goes on.
+#[derive(Args)]
+pub struct Sensitivity {
+    /// Only one setting (or group of settings) of the design, by its name
+    #[arg(long, value_name = "NAME")]
+    only: Option<String>,
+    #[command(flatten)]
+    study: Study,
+}
+
+impl Sensitivity {
+    /// Runs the subcommand.
+    pub fn run(self) -> Result<ExitCode> {
+        self.study.threads.apply()?;
+        let (text, origin) = self.study.design((sensitivity::DESIGN, "reproduce/sensitivity.toml"))?;
+        let out = &self.study.out;
+        let mut design = sensitivity::Design::parse(&text, &origin)?;
+        if let Some(name) = &self.only {
+            design = design.only(name, &origin)?;
+        }
+        prepare_folder(out)?;
+        sensitivity::study(&design, &text, out)?;
+        say(format!("All files are in {}; open sensitivity.md there.", out.display()))?;
+        Ok(ExitCode::SUCCESS)
+    }
+}
+
+/// Where a study's design comes from, and where its files go.
+#[derive(Args)]
+struct Study {
+    /// Design, instead of the one in reproduce/
+    #[arg(long, value_name = "FILE")]
+    design: Option<PathBuf>,
+    #[command(flatten)]
+    threads: Threads,
+    /// Folder to write to
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+}
+
+impl Study {
+    /// The text of the design and where it is from: the user's file, or `default` with its name.
+    fn design(&self, default: (&str, &str)) -> Result<(String, String)> {
+        match &self.design {
+            None => Ok((default.0.to_owned(), default.1.to_owned())),
+            Some(path) => Ok((read_toml(path)?, path.display().to_string())),
+        }
+    }
+}

@@ -1,0 +1,197 @@
+//! Options that several subcommands share, and settings that are options.
+
+use std::path::PathBuf;
+
+use anyhow::{Result, ensure};
+use clap::Args;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+use crate::analysis::published::Experiment;
+use crate::settings::Settings;
+use crate::stages::body_map::MapMethod;
+use crate::stages::quantise::Scheme;
+use crate::stages::schema::{EdgeWeight, Keep, Model, Start};
+
+/// The number of threads.
+#[derive(Args)]
+pub struct Threads {
+    /// Number of threads; results do not depend on it [default: one for each core]
+    #[arg(long, value_name = "N")]
+    jobs: Option<usize>,
+}
+
+impl Threads {
+    /// Starts as many threads as the user wants.
+    pub fn apply(&self) -> Result<()> {
+        if let Some(jobs) = self.jobs {
+            ensure!((1..=1024).contains(&jobs), "--jobs is {jobs}, but must be 1 to 1024");
+            rayon::ThreadPoolBuilder::new().num_threads(jobs).build_global()?;
+        }
+        Ok(())
+    }
+}
+
+/// A settings file.
+#[derive(Args)]
+pub struct SettingsFile {
+    /// File with the settings that differ from reproduce/paper.toml, which names and explains all of them
+    #[arg(long, value_name = "FILE")]
+    pub settings: Option<PathBuf>,
+}
+
+impl SettingsFile {
+    /// The settings, of a quick run if `quick`.
+    pub fn load(&self, quick: bool) -> Result<Settings> {
+        Ok(Settings::load(quick, self.settings.as_deref())?)
+    }
+}
+
+/// A settings file and the master seed.
+#[derive(Args)]
+pub struct SettingsAndSeed {
+    #[command(flatten)]
+    pub file: SettingsFile,
+    #[arg(long, value_name = "S", help = with_default("Master seed of all random numbers", paper().experiment.seed))]
+    seed: Option<u64>,
+}
+
+impl SettingsAndSeed {
+    /// The settings, of a quick run if `quick`.
+    pub fn load(&self, quick: bool) -> Result<Settings> {
+        let mut settings = self.file.load(quick)?;
+        set(&mut settings.experiment.seed, self.seed);
+        Ok(settings)
+    }
+}
+
+/// Replaces a setting if its option was given.
+pub fn set<T>(setting: &mut T, option: Option<T>) {
+    if let Some(value) = option {
+        *setting = value;
+    }
+}
+
+/// The default settings.
+pub fn paper() -> Settings {
+    Settings::paper()
+}
+
+/// A help text with a setting's default.
+pub fn with_default(text: &str, default: impl Serialize) -> String {
+    format!("{text} [default: {}]", name(&default))
+}
+
+/// The name of a setting's value, as settings files write it.
+fn name(value: &impl Serialize) -> String {
+    serde_json::to_value(value).expect("a setting's value is plain data").to_string().replace('"', "")
+}
+
+/// A setting with a fixed set of values.
+pub trait Choice: Clone + Send + Sync + Serialize + DeserializeOwned + 'static {
+    /// All values, each with what it means.
+    const VALUES: &'static [(Self, &'static str)];
+}
+
+/// Reads a [`Choice`] from the command line, and explains its values in the help text.
+pub fn choice<T: Choice>() -> impl TypedValueParser<Value = T> {
+    let values = T::VALUES.iter().map(|(value, help)| PossibleValue::new(name(value)).help(*help));
+    let read = |text: String| serde_json::from_value(text.into()).expect("clap admits the named values only");
+    PossibleValuesParser::new(values).map(read)
+}
+
+impl Choice for Scheme {
+    const VALUES: &'static [(Self, &'static str)] = &[
+        (
+            Self::PerSensor,
+            "Level 0 is no pressure; the others share each sensor's positive pressures equally",
+        ),
+        (Self::Pooled, "The same with one set of thresholds for all sensors"),
+        (Self::EqualWidth, "Levels of equal width between the smallest and the largest pressure"),
+    ];
+}
+
+impl Choice for MapMethod {
+    const VALUES: &'static [(Self, &'static str)] = &[
+        (Self::Classical, "Classical scaling (Torgerson): the largest eigenvalues of the inner products"),
+        (Self::Smacof, "Metric scaling by majorisation, from the classical map on"),
+        (Self::Nonmetric, "Nonmetric scaling (Kruskal): only the order of the distances counts"),
+    ];
+}
+
+impl Choice for Model {
+    const VALUES: &'static [(Self, &'static str)] = &[
+        (Self::Dpgmm, "Dirichlet-process Gaussian mixture; its tree is found afterwards by Prim's algorithm"),
+        (Self::DpgmmLj, "The same with latent joints (DPGMM-LJ), the paper's method"),
+    ];
+}
+
+impl Choice for EdgeWeight {
+    const VALUES: &'static [(Self, &'static str)] = &[
+        (Self::Literal, "Each child keeps the joint it has, whichever parent is weighed"),
+        (Self::Pairwise, "A joint is drawn for each pair of active components, and weighs that pair"),
+        (Self::Collapsed, "The joint is integrated out"),
+    ];
+}
+
+impl Choice for Start {
+    const VALUES: &'static [(Self, &'static str)] = &[
+        (Self::Uniform, "Each sensor in a component drawn uniformly"),
+        (Self::KMeans, "The clusters of k-means from one random start"),
+        (Self::Single, "All sensors in one component"),
+    ];
+}
+
+impl Choice for Keep {
+    const VALUES: &'static [(Self, &'static str)] =
+        &[(Self::Last, "The last draw of each chain"), (Self::All, "Every draw after burn-in")];
+}
+
+impl Choice for Experiment {
+    const VALUES: &'static [(Self, &'static str)] = &[
+        (Self::Exp1, "Section 5: body schema estimation over the dimensions d of the body map"),
+        (Self::Exp2, "Section 6: body schema estimation over the ratio p of motor coordination"),
+    ];
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::stages::baselines::Clustering;
+
+    /// The names that a settings file may give, as the error for another one lists them.
+    fn all_names<T: Choice>() -> Vec<String> {
+        let message = serde_json::from_str::<T>("\"?\"").err().expect("? is no name").to_string();
+        message.split('`').skip(3).step_by(2).map(str::to_owned).collect()
+    }
+
+    fn check<T: Choice>() {
+        let offered: Vec<String> = T::VALUES.iter().map(|(value, _)| name(value)).collect();
+        assert_eq!(offered, all_names::<T>());
+    }
+
+    #[test]
+    fn names_are_those_in_files() {
+        for method in Clustering::ALL {
+            assert_eq!(name(&method), method.name());
+        }
+        for model in Model::ALL {
+            assert_eq!(name(&model), model.name());
+        }
+        for experiment in [Experiment::Exp1, Experiment::Exp2] {
+            assert_eq!(name(&experiment), experiment.name());
+        }
+    }
+
+    #[test]
+    fn every_value_of_a_setting_can_be_chosen() {
+        check::<Scheme>();
+        check::<MapMethod>();
+        check::<Model>();
+        check::<EdgeWeight>();
+        check::<Start>();
+        check::<Keep>();
+        check::<Experiment>();
+    }
+}

@@ -1,0 +1,80 @@
+//! Parse the arguments, run the subcommand, and turn its outcome into an exit status.
+
+use std::process::ExitCode;
+
+use anyhow::Result;
+use clap::{Parser, Subcommand};
+
+use super::experiments::{Reproduce, Search, Sensitivity};
+use super::results::{Plot, Verify};
+use super::stages::{Distance, Infer, Map, Simulate};
+
+/// Finds out from touch alone how many parts a body has, which sensor sits on which part, and how the parts are
+/// joined: a replication of Mimura, Hagiwara, Taniguchi and Inamura (2017).
+#[derive(Parser)]
+#[command(name = "bodyschema", version, arg_required_else_help = true)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    Simulate(Simulate),
+    Distance(Distance),
+    Map(Map),
+    Infer(Infer),
+    Reproduce(Reproduce),
+    Search(Search),
+    Sensitivity(Sensitivity),
+    Plot(Plot),
+    Verify(Verify),
+}
+
+impl Command {
+    fn run(self) -> Result<ExitCode> {
+        match self {
+            Self::Simulate(command) => command.run(),
+            Self::Distance(command) => command.run(),
+            Self::Map(command) => command.run(),
+            Self::Infer(command) => command.run(),
+            Self::Reproduce(command) => command.run(),
+            Self::Search(command) => command.run(),
+            Self::Sensitivity(command) => command.run(),
+            Self::Plot(command) => command.run(),
+            Self::Verify(command) => command.run(),
+        }
+    }
+}
+
+/// Runs the program. Exit status, as `diff` has it: 0 done and every claim reproduced, 1 some claim not, 2 trouble,
+/// 130 interrupted.
+pub fn main() -> ExitCode {
+    // Every file appears whole or not at all, so nothing needs to be put in order before leaving.
+    let handler = ctrlc::set_handler(|| {
+        eprintln!("bodyschema: interrupted; start the same command again to go on from what is finished");
+        std::process::exit(130);
+    });
+    if let Err(error) = handler {
+        eprintln!("bodyschema: Ctrl-C cannot be caught: {error}");
+    }
+    match Arguments::parse().command.run() {
+        Ok(status) => status,
+        Err(error) => {
+            eprintln!("bodyschema: {error:#}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    use super::*;
+
+    #[test]
+    fn the_definition_of_the_command_line_is_sound() {
+        Arguments::command().debug_assert();
+    }
+}

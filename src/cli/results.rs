@@ -1,0 +1,98 @@
+//! The subcommands that look at finished results: plot, verify.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use anyhow::{Result, ensure};
+use clap::Args;
+
+use super::output::say;
+use crate::experiments::sensitivity;
+use crate::experiments::verify::{Finding, Outcome, against_manifest, against_reference, has_manifest};
+use crate::report::{page, plot};
+
+/// Draws the pictures of an experiment or study again, each from its table, and writes its page again.
+///
+/// Reads DIR/figures/*.csv and writes an .svg beside each; then, where DIR holds a finished experiment, report.html from
+/// its claims.csv and manifest.json. Where DIR holds a sensitivity study: its pictures and sensitivity.md, from
+/// sensitivity.csv and design.toml.
+#[derive(Args)]
+pub struct Plot {
+    /// Folder of an experiment or study
+    #[arg(value_name = "DIR")]
+    folder: PathBuf,
+}
+
+impl Plot {
+    /// Runs the subcommand.
+    pub fn run(self) -> Result<ExitCode> {
+        let folder = &self.folder;
+        if sensitivity::is_study(folder) {
+            let pictures = sensitivity::redraw(folder)?;
+            say(format!("{} pictures and sensitivity.md in {}", pictures.len(), folder.display()))?;
+            return Ok(ExitCode::SUCCESS);
+        }
+        let figures = folder.join("figures");
+        let pictures = plot::render(&figures)?;
+        ensure!(
+            !pictures.is_empty(),
+            "{}: has none of the tables fig04-agent.csv to fig11b-tree.csv",
+            figures.display()
+        );
+        say(format!("{} pictures in {}", pictures.len(), figures.display()))?;
+        if has_manifest(folder) {
+            page::write(folder)?;
+            say(format!("report in {}", folder.join("report.html").display()))?;
+        }
+        Ok(ExitCode::SUCCESS)
+    }
+}
+
+/// Compares results with the hashes in their manifest, or with other results; exit status 0 if all agree, 1 if some do
+/// not, 2 on trouble.
+///
+/// With --against, compares every .csv and .npy file of REFERENCE with that of DIR: the same bytes; or all numbers
+/// within 1e-6 of the larger one or of 1; or, for samples.csv with scores, other draws whose rates (eligible, trees
+/// right) are within 4 standard errors in each condition. Lists what is not the same.
+#[derive(Args)]
+pub struct Verify {
+    /// Folder of results
+    #[arg(value_name = "DIR")]
+    folder: PathBuf,
+    /// Folder of results to compare with
+    #[arg(long, value_name = "REFERENCE")]
+    against: Option<PathBuf>,
+}
+
+impl Verify {
+    /// Runs the subcommand.
+    pub fn run(self) -> Result<ExitCode> {
+        let folder = &self.folder;
+        let mut agree = true;
+        if self.against.is_none() || has_manifest(folder) {
+            agree &= self.tell(&against_manifest(folder)?, "the hashes in manifest.json")?;
+        }
+        if let Some(reference) = &self.against {
+            let findings = against_reference(folder, reference)?;
+            agree &= self.tell(&findings, &reference.display().to_string())?;
+        }
+        Ok(if agree { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+    }
+
+    /// Lists what is not the same, and says whether all agrees.
+    fn tell(&self, findings: &[Finding], with: &str) -> Result<bool> {
+        for finding in findings.iter().filter(|finding| finding.outcome != Outcome::Same) {
+            say(finding)?;
+        }
+        let same = findings.iter().filter(|finding| finding.outcome == Outcome::Same).count();
+        let agreeing = findings.iter().filter(|finding| finding.outcome.agrees()).count();
+        say(format!(
+            "{}: {} compared with {with}: {same} the same, {} within tolerance, {} not",
+            self.folder.display(),
+            findings.len(),
+            agreeing - same,
+            findings.len() - agreeing
+        ))?;
+        Ok(agreeing == findings.len())
+    }
+}

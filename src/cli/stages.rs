@@ -1,0 +1,301 @@
+//! The subcommands of the stages: simulate, distance, map, infer.
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use anyhow::{Context, Result, ensure};
+use clap::Args;
+
+use super::options::{SettingsAndSeed, SettingsFile, choice, paper, set, with_default};
+use super::output::say;
+use crate::analysis::statistics::{Estimate, mean, rate};
+use crate::experiments::progress::progress;
+use crate::files::{npy, prepare_folder, tables};
+use crate::numerics::rng::stream;
+use crate::settings::Settings;
+use crate::stages::agent::Agent;
+use crate::stages::body_map::{BodyMap, BodyMaps, ClassicalScaling, Improvement, MapMethod};
+use crate::stages::distance::information_metric;
+use crate::stages::evaluate::{Score, parts, score};
+use crate::stages::quantise::{Scheme, quantise};
+use crate::stages::schema::{Draw, EdgeWeight, Keep, Model, Start, best, infer};
+use crate::stages::sense::sense;
+use crate::stages::simulate::simulate;
+
+/// Stages 1 and 2: moves a body at random in a fluid and records the pressure on its sensors.
+///
+/// Writes into DIR: tactile.npy (float32, T x M, Pa), labels.csv (sensor,part), tree.csv (child,parent) and
+/// joint-angles.csv (time_s, then two angles for each joint in rad; T + 1 rows). T is the number of samples, M of
+/// sensors.
+#[derive(Args)]
+pub struct Simulate {
+    #[command(flatten)]
+    common: SettingsAndSeed,
+    /// Folder to write to
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+}
+
+impl Simulate {
+    /// Runs the subcommand.
+    pub fn run(self) -> Result<ExitCode> {
+        let (settings, out) = (self.common.load(false)?, &self.out);
+        let Settings { agent, skin, motion, physics, sense: tactile_sense, experiment, .. } = &settings;
+        prepare_folder(out)?;
+        let agent = Agent::new(agent, skin);
+        let interval = tactile_sense.interval;
+        let bar = progress(physics.samples(interval) as u64 + 1, "simulate".to_owned());
+        let mut rng = stream(experiment.seed, 1, "motion", 0);
+        let trajectory = simulate(&agent, motion, physics, interval, &mut rng, &|| bar.inc(1))?;
+        bar.finish_and_clear();
+        tables::write_truth(&out.join("labels.csv"), &out.join("tree.csv"), &agent.truth())?;
+        tables::write_joint_angles(&out.join("joint-angles.csv"), &trajectory, interval)?;
+        let tactile = sense(&agent, &trajectory, tactile_sense);
+        npy::write_tactile(&out.join("tactile.npy"), &tactile)?;
+        say(format!(
+            "{} samples of {} sensors on {} parts, seed {}, in {}",
+            tactile.samples,
+            tactile.sensors(),
+            agent.parts.len(),
+            experiment.seed,
+            out.display()
+        ))?;
+        Ok(ExitCode::SUCCESS)
+    }
+}
+
+/// Stages 3 and 4: turns pressures into symbols, and these into the information metric.
+///
+/// Reads pressures (float32, float64 or integers, T x M, Pa, not negative) and writes the distances
+/// H(X|Y) + H(Y|X) between all pairs of sensors (float64, M x M, bits).
+#[derive(Args)]
+pub struct Distance {
+    /// Pressures, or with --symbols symbols: a .npy file with a row for each sample and a column for each sensor
+    tactile: PathBuf,
+    #[arg(long, value_parser = choice::<Scheme>(),
+          help = with_default("How pressures become levels", paper().quantise.scheme))]
+    scheme: Option<Scheme>,
+    #[arg(long, value_name = "N", conflicts_with = "symbols",
+          help = with_default("Number of levels, 2 to 256; no pressure is one of them", paper().quantise.levels))]
+    levels: Option<usize>,
+    /// The input is symbols already: whole numbers from 0 to 255
+    #[arg(long, conflicts_with = "scheme")]
+    symbols: bool,
+    #[command(flatten)]
+    file: SettingsFile,
+    /// File for the distances (.npy)
+    #[arg(long, value_name = "FILE")]
+    out: PathBuf,
+}
+
+impl Distance {
+    /// Runs the subcommand.
+    pub fn run(self) -> Result<ExitCode> {
+        let (input, out) = (&self.tactile, &self.out);
+        let mut settings = self.file.load(false)?;
+        set(&mut settings.quantise.scheme, self.scheme);
+        set(&mut settings.quantise.levels, self.levels);
+        settings.validate()?;
+        let symbols = if self.symbols {
+            npy::read_symbols(input)?
+        } else {
+            quantise(&npy::read_tactile(input)?, &settings.quantise)
+        };
+        let constant = symbols.constant_sensors();
+        if !constant.is_empty() {
+            eprintln!(
+                "bodyschema: {}: {} of {} sensors never change and tell nothing (the first is sensor {})",
+                input.display(),
+                constant.len(),
+                symbols.sensors(),
+                constant[0]
+            );
+        }
+        npy::write_distances(out, &information_metric(&symbols))?;
+        say(format!(
+            "information metric of {} sensors over {} samples of {} levels, in {}",
+            symbols.sensors(),
+            symbols.samples,
+            symbols.levels,
+            out.display()
+        ))?;
+        Ok(ExitCode::SUCCESS)
+    }
+}
+
+/// Stage 5: places the sensors in D dimensions by multidimensional scaling.
+///
+/// Reads distances (M x M) and writes coordinates (float64, M x D, in the unit of the distances; columns of a classical
+/// map by descending eigenvalue). For smacof and nonmetric, which start from the classical map, it prints Kruskal's
+/// stress-1.
+#[derive(Args)]
+pub struct Map {
+    /// Distances: a .npy file, M x M, symmetric
+    distance: PathBuf,
+    /// Number of dimensions
+    #[arg(long, value_name = "D")]
+    dims: usize,
+    #[arg(long, value_parser = choice::<MapMethod>(),
+          help = with_default("Variant of multidimensional scaling", paper().map.method))]
+    method: Option<MapMethod>,
+    #[command(flatten)]
+    file: SettingsFile,
+    /// File for the body map (.npy)
+    #[arg(long, value_name = "FILE")]
+    out: PathBuf,
+}
+
+impl Map {
+    /// Runs the subcommand.
+    pub fn run(self) -> Result<ExitCode> {
+        let (input, out, dims) = (&self.distance, &self.out, self.dims);
+        let mut settings = self.file.load(false)?;
+        set(&mut settings.map.method, self.method);
+        ensure!(dims >= 1, "--dims is 0, but must be at least 1");
+        let distances = npy::read_distances(input)?;
+        let in_file = || input.display().to_string();
+        let scaling = ClassicalScaling::new(&distances, dims).with_context(in_file)?;
+        let method = settings.map.method;
+        let (maps, improvements) =
+            BodyMaps::new(&distances, &scaling, method, &[dims]).with_context(in_file)?;
+        let map = maps.in_dims(dims);
+        npy::write_body_map(out, &map)?;
+        let fit = match improvements.first() {
+            None => format!(
+                "its eigenvalues make up {:.2} % of the sum of squares of all",
+                100.0 * scaling.agreement(dims)
+            ),
+            Some(Improvement { start, stress, steps, .. }) => {
+                format!(
+                    "its stress-1 is {stress:.4} after {steps} steps from {start:.4} of the classical map"
+                )
+            }
+        };
+        say(format!(
+            "body map of {} sensors in {dims} dimensions, in {}; {fit}",
+            map.points(),
+            out.display()
+        ))?;
+        Ok(ExitCode::SUCCESS)
+    }
+}
+
+/// Stages 6 and 7: draws body schemas; with the truth given, evaluates them.
+///
+/// Reads coordinates (M x D) and writes into DIR: assignments.npy (int32, draws x M, component of each
+/// sensor), samples.csv (a row for each draw: chain,parts,log_posterior, and with the truth given
+/// ari,eligible,tree_correct) and trees.csv (chain,child,parent and, for dpgmm-lj, the joint's place on the
+/// body map, x1 ... xD). With --keep all, a column `sweep` follows the chain.
+#[derive(Args)]
+pub struct Infer {
+    /// Body map: a .npy file, M x D
+    body_map: PathBuf,
+    /// The mixture
+    #[arg(long, value_parser = choice::<Model>(), default_value = "dpgmm-lj")]
+    model: Model,
+    #[arg(long, value_name = "K", help = with_default("Components of the weak-limit approximation", paper().schema.components))]
+    components: Option<usize>,
+    #[arg(long, value_name = "N", help = with_default("Number of independent chains", paper().schema.chains))]
+    chains: Option<usize>,
+    #[arg(long, value_name = "N", help = with_default("Gibbs sweeps of each chain", paper().schema.sweeps))]
+    sweeps: Option<usize>,
+    #[arg(long, value_parser = choice::<EdgeWeight>(),
+          help = with_default("Edge weight of the minimum spanning tree", paper().schema.edge_weight))]
+    edge_weight: Option<EdgeWeight>,
+    #[arg(long, value_parser = choice::<Start>(),
+          help = with_default("Components that each chain starts with", paper().schema.start))]
+    start: Option<Start>,
+    #[arg(long, value_parser = choice::<Keep>(),
+          help = with_default("Draws of each chain that are kept", paper().schema.keep))]
+    keep: Option<Keep>,
+    #[arg(long, value_name = "N", help = with_default("Sweeps dropped with --keep all", paper().schema.burn_in))]
+    burn_in: Option<usize>,
+    #[command(flatten)]
+    common: SettingsAndSeed,
+    /// True part of each sensor: a .csv file with columns sensor,part
+    #[arg(long, value_name = "FILE", requires = "tree")]
+    labels: Option<PathBuf>,
+    /// True tree: a .csv file with columns child,parent
+    #[arg(long, value_name = "FILE", requires = "labels")]
+    tree: Option<PathBuf>,
+    /// Folder to write to
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+}
+
+impl Infer {
+    /// Runs the subcommand.
+    pub fn run(self) -> Result<ExitCode> {
+        let settings = self.settings()?;
+        let Settings { schema, evaluate, experiment, .. } = &settings;
+        let (input, out) = (&self.body_map, &self.out);
+        let map = npy::read_body_map(input)?;
+        prepare_folder(out)?;
+        let truth = self.labels.as_ref().zip(self.tree.as_ref());
+        let truth = truth.map(|(labels, tree)| tables::read_truth(labels, tree, map.points())).transpose()?;
+        let bar = progress(schema.chains as u64, "infer".to_owned());
+        let draws = infer(&map, self.model, schema, experiment.seed, 1, &|| bar.inc(1))
+            .with_context(|| input.display().to_string())?;
+        bar.finish_and_clear();
+        let scores: Option<Vec<Score>> =
+            truth.map(|truth| draws.iter().map(|draw| score(draw, &truth, evaluate.eligible_ari)).collect());
+        npy::write_assignments(&out.join("assignments.npy"), &draws)?;
+        tables::write_draws(&out.join("samples.csv"), &draws, schema.keep, scores.as_deref())?;
+        tables::write_trees(&out.join("trees.csv"), &draws, schema.keep)?;
+        print_run(self.model, &map, draws.len(), &settings, out)?;
+        print_draws(&draws, scores.as_deref())?;
+        Ok(ExitCode::SUCCESS)
+    }
+
+    fn settings(&self) -> Result<Settings> {
+        let mut settings = self.common.load(false)?;
+        let schema = &mut settings.schema;
+        set(&mut schema.components, self.components);
+        set(&mut schema.chains, self.chains);
+        set(&mut schema.sweeps, self.sweeps);
+        set(&mut schema.edge_weight, self.edge_weight);
+        set(&mut schema.start, self.start);
+        set(&mut schema.keep, self.keep);
+        set(&mut schema.burn_in, self.burn_in);
+        settings.validate()?;
+        Ok(settings)
+    }
+}
+
+fn print_run(model: Model, map: &BodyMap, draws: usize, settings: &Settings, out: &Path) -> Result<()> {
+    say(format!(
+        "{} of {} sensors in {} dimensions: {draws} draws of {} chains of {} sweeps, seed {}, in {}",
+        model.name(),
+        map.points(),
+        map.dims,
+        settings.schema.chains,
+        settings.schema.sweeps,
+        settings.experiment.seed,
+        out.display()
+    ))
+}
+
+fn print_draws(draws: &[Draw], scores: Option<&[Score]>) -> Result<()> {
+    let counts: Vec<f64> = draws.iter().map(|draw| parts(&draw.labels) as f64).collect();
+    say(format!("parts: {}", line(&mean(&counts), "mean")))?;
+    let best = best(draws);
+    say(format!("draw of highest log posterior: chain {}, {} parts", best.chain, parts(&best.labels)))?;
+    let Some(scores) = scores else { return Ok(()) };
+    let aris: Vec<f64> = scores.iter().map(|score| score.ari).collect();
+    say(format!("adjusted Rand index: {}", line(&mean(&aris), "mean")))?;
+    let eligible = scores.iter().filter(|score| score.eligible);
+    let right = eligible.clone().filter(|score| score.tree_correct).count();
+    let rate = rate(right, eligible.count());
+    say(format!("tree right among eligible draws: {}", line(&rate, &format!("{right} of {}:", rate.n))))
+}
+
+/// An estimate with its interval.
+fn line(estimate: &Estimate, what: &str) -> String {
+    match (estimate.value, estimate.interval) {
+        (None, _) => format!("{what} no rate"),
+        (Some(value), None) => format!("{what} {value:.3} (n = {})", estimate.n),
+        (Some(value), Some((low, high))) => {
+            format!("{what} {value:.3} (95 % interval {low:.3} to {high:.3}, n = {})", estimate.n)
+        }
+    }
+}

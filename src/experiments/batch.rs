@@ -1,0 +1,393 @@
+//! Run tasks: simulate each movement once, infer from its body maps as often as asked, and do no work twice.
+//!
+//! Finished work is kept in checkpoints, from which a run that was stopped goes on. Experiments, the search and the
+//! study all run their simulations here.
+
+use std::cell::Cell;
+use std::collections::HashMap;
+use std::path::Path;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
+
+use indicatif::ProgressBar;
+use serde::{Deserialize, Serialize};
+
+use super::error::ExperimentError;
+use crate::files::checkpoint::Checkpoints;
+use crate::files::{FileError, npy, sha256, tables};
+use crate::pipeline::{
+    BaselineRecord, Body, Condition, Facts, FeltBody, Inference, MappedBody, Record, StageError,
+    cluster_and_score, feel, infer_and_score, map_felt,
+};
+use crate::settings::Settings;
+use crate::stages::body_map::BodyMaps;
+use crate::stages::schema::Draw;
+
+/// Steps of the progress bar that a movement counts for.
+const MOVEMENT: u64 = 100;
+
+/// What is inferred from one movement of one body.
+#[derive(Debug, Clone)]
+pub struct Task {
+    /// Its name among the checkpoints; tasks of one name are the same.
+    pub name: String,
+    /// All settings, with p of this movement.
+    pub settings: Settings,
+    /// Number of the simulation, from 1.
+    pub simulation: usize,
+    /// What is inferred, each at d of a body map.
+    pub conditions: Vec<Condition>,
+    /// d of the body maps that are also clustered.
+    pub clustered: Vec<usize>,
+    /// Which files of the body are kept in the folder of its name.
+    pub keep: Keep,
+}
+
+/// Which files of a body are results.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Keep {
+    /// None: only what is inferred counts.
+    Nothing,
+    /// The truth and the body maps.
+    Maps,
+    /// The truth, the body maps and the distances.
+    MapsAndDistances,
+}
+
+/// What a task found.
+#[derive(Debug, Clone, Default)]
+pub struct Found {
+    /// All draws, evaluated, by condition.
+    pub records: Vec<Record>,
+    /// Of each condition the draw of highest log posterior.
+    pub best: Vec<Draw>,
+    /// All clusterings, evaluated.
+    pub baselines: Vec<BaselineRecord>,
+    /// The body, where its files are kept.
+    pub kept: Option<KeptBody>,
+}
+
+/// A body whose files are results.
+#[derive(Debug, Clone)]
+pub struct KeptBody {
+    /// Truth and body maps.
+    pub body: Body,
+    /// How well its sensors could be mapped.
+    pub facts: Facts,
+    /// Its files, within the folder of results.
+    pub files: Vec<String>,
+}
+
+/// What a task found, or why it failed.
+pub type Outcome = Result<Found, String>;
+
+/// Runs tasks whose results go to one folder.
+pub struct Batch<'a> {
+    /// The folder.
+    pub out: &'a Path,
+    /// Finished work.
+    pub checkpoints: &'a Checkpoints,
+    /// A bar as long as [`Batch::length`] says.
+    pub bar: &'a ProgressBar,
+}
+
+/// Why a task stops: it fails, which is an outcome, or a file cannot be written, which ends the run.
+enum Stop {
+    Failed(String),
+    File(FileError),
+}
+
+impl From<FileError> for Stop {
+    fn from(error: FileError) -> Self {
+        Self::File(error)
+    }
+}
+
+impl From<StageError> for Stop {
+    fn from(error: StageError) -> Self {
+        Self::Failed(error.to_string())
+    }
+}
+
+/// The pressures of a movement, or why there are none, once a task needed them.
+type Felt = Option<Result<FeltBody, String>>;
+
+/// Finished body maps: their files are the result, and a checkpoint keeps the hashes.
+#[derive(Serialize, Deserialize)]
+struct MappedFiles {
+    facts: Facts,
+    files: Vec<(String, String)>,
+}
+
+impl Batch<'_> {
+    /// Length of the progress bar for some tasks.
+    pub fn length(tasks: &[Task]) -> u64 {
+        tasks.iter().map(Task::length).sum()
+    }
+
+    /// Runs one task after the other, each on all threads.
+    ///
+    /// # Errors
+    /// If a task fails, or a file cannot be written.
+    pub fn one_by_one(&self, tasks: &[Task]) -> Result<Vec<Found>, ExperimentError> {
+        let run = |task: &Task| {
+            self.bar.set_message(task.name.clone());
+            self.finish(task, &mut None)?.map_err(ExperimentError::Stage)
+        };
+        tasks.iter().map(run).collect()
+    }
+
+    /// Runs as many tasks at once as there are threads, those that share a movement after each other. Each takes as much
+    /// memory as the pressures of one simulation, 0.5 GB at full size.
+    ///
+    /// # Errors
+    /// If a file cannot be written.
+    pub fn side_by_side(&self, tasks: &[Task]) -> Result<Vec<Outcome>, FileError> {
+        let movements = by_movement(tasks);
+        let outcomes: Vec<Mutex<Option<Outcome>>> = tasks.iter().map(|_| Mutex::new(None)).collect();
+        let trouble: Mutex<Option<FileError>> = Mutex::new(None);
+        let next = AtomicUsize::new(0);
+        let work = || {
+            while let Some(movement) = movements.get(next.fetch_add(1, Ordering::Relaxed)) {
+                let mut felt = None;
+                for &at in movement {
+                    match self.finish(&tasks[at], &mut felt) {
+                        Ok(outcome) => *outcomes[at].lock().expect("no worker panics") = Some(outcome),
+                        Err(error) => {
+                            next.store(movements.len(), Ordering::Relaxed);
+                            trouble.lock().expect("no worker panics").get_or_insert(error);
+                        }
+                    }
+                }
+            }
+        };
+        // Not by the pool's threads: one that waits for its own work would begin another movement meanwhile, and
+        // with it take as much memory again.
+        std::thread::scope(|scope| {
+            (0..rayon::current_num_threads()).for_each(|_| drop(scope.spawn(work)));
+        });
+        if let Some(error) = trouble.into_inner().expect("no worker panics") {
+            return Err(error);
+        }
+        let outcome = |slot: Mutex<Option<Outcome>>| slot.into_inner().expect("no worker panics");
+        Ok(outcomes.into_iter().map(|slot| outcome(slot).expect("every task was done")).collect())
+    }
+
+    /// Does what is left of a task. `felt` is its movement, once one of the tasks that share it needs it.
+    fn finish(&self, task: &Task, felt: &mut Felt) -> Result<Outcome, FileError> {
+        let progress = TaskProgress { bar: self.bar, done: AtomicU64::new(0) };
+        let failed = format!("{}/failed", task.name);
+        let outcome = match self.checkpoints.recall(&failed) {
+            Some(reason) => Err(reason),
+            None => match self.try_to_finish(task, felt, &progress) {
+                Ok(found) => Ok(found),
+                Err(Stop::File(error)) => return Err(error),
+                Err(Stop::Failed(reason)) => {
+                    self.checkpoints.keep(&failed, &reason)?;
+                    Err(reason)
+                }
+            },
+        };
+        progress.complete(task);
+        Ok(outcome)
+    }
+
+    fn try_to_finish(&self, task: &Task, felt: &mut Felt, progress: &TaskProgress) -> Result<Found, Stop> {
+        let mut found = Found::default();
+        let mut body = None;
+        if task.keep != Keep::Nothing {
+            let kept = match self.recall_body(task) {
+                Some(kept) => kept,
+                None => self.write_body(task, map(task, felt, progress)?)?,
+            };
+            body = Some(kept.body.clone());
+            found.kept = Some(kept);
+        }
+        for &condition in &task.conditions {
+            let inference = self.infer(task, condition, &mut body, felt, progress)?;
+            found.records.extend(inference.records);
+            found.best.push(inference.best);
+        }
+        for &dimension in &task.clustered {
+            let body = body.as_ref().expect("a body that is clustered is kept");
+            found.baselines.extend(self.cluster(task, body, dimension)?);
+        }
+        Ok(found)
+    }
+
+    /// What is inferred in one condition; its body is mapped if that was not done before.
+    fn infer(
+        &self,
+        task: &Task,
+        condition: Condition,
+        body: &mut Option<Body>,
+        felt: &mut Felt,
+        progress: &TaskProgress,
+    ) -> Result<Inference, Stop> {
+        let name = format!("{}/{}-{}", task.name, condition.model.name(), condition.dimension);
+        if let Some(finished) = self.checkpoints.recall(&name) {
+            progress.add(task.settings.schema.chains as u64);
+            return Ok(finished);
+        }
+        let body = match body {
+            Some(body) => body,
+            none => none.insert(map(task, felt, progress)?.body),
+        };
+        let tick = || progress.add(1);
+        let found = infer_and_score(body, condition, &task.settings, task.simulation, &tick)?;
+        self.checkpoints.keep(&name, &found)?;
+        Ok(found)
+    }
+
+    /// The clusterings on one body map.
+    fn cluster(&self, task: &Task, body: &Body, dimension: usize) -> Result<Vec<BaselineRecord>, Stop> {
+        let name = format!("{}/baselines-{dimension}", task.name);
+        if let Some(finished) = self.checkpoints.recall(&name) {
+            return Ok(finished);
+        }
+        let found = cluster_and_score(body, dimension, &task.settings, task.simulation);
+        self.checkpoints.keep(&name, &found)?;
+        Ok(found)
+    }
+
+    /// Writes the files of a body, and a checkpoint with their hashes.
+    fn write_body(&self, task: &Task, mapped: MappedBody) -> Result<KeptBody, FileError> {
+        let MappedBody { body, distances, facts } = mapped;
+        let folder = self.out.join(&task.name);
+        let mut names = vec!["labels.csv".to_owned(), "tree.csv".to_owned()];
+        tables::write_truth(&folder.join(&names[0]), &folder.join(&names[1]), &body.truth)?;
+        if task.keep == Keep::MapsAndDistances {
+            npy::write_distances(&folder.join("distance.npy"), &distances)?;
+            names.push("distance.npy".to_owned());
+        }
+        for (name, map) in body.maps.iter().flat_map(BodyMaps::files) {
+            npy::write_body_map(&folder.join(&name), map)?;
+            names.push(name);
+        }
+        let hashed = |name: String| Ok((name.clone(), sha256(&folder.join(name))?));
+        let files = names.into_iter().map(hashed).collect::<Result<_, FileError>>()?;
+        let finished = MappedFiles { facts, files };
+        self.checkpoints.keep(&format!("{}/body", task.name), &finished)?;
+        Ok(finished.of(task, body))
+    }
+
+    /// A body that an earlier run mapped, if its files are still what they were.
+    fn recall_body(&self, task: &Task) -> Option<KeptBody> {
+        let finished: MappedFiles = self.checkpoints.recall(&format!("{}/body", task.name))?;
+        let folder = self.out.join(&task.name);
+        for (name, hash) in &finished.files {
+            let path = folder.join(name);
+            if sha256(&path).ok().as_ref() != Some(hash) {
+                eprintln!("bodyschema: {}: has changed or is missing; it is made again", path.display());
+                return None;
+            }
+        }
+        let maps = finished.files.iter().filter(|(name, _)| name.starts_with("body-map"));
+        // A map that is there and cannot be read is not one that we wrote.
+        let maps: Option<Vec<_>> =
+            maps.map(|(name, _)| npy::read_body_map(&folder.join(name)).ok()).collect();
+        let maps = BodyMaps::of(task.settings.map.method, maps?);
+        let sensors = task.settings.sensors();
+        let truth = tables::read_truth(&folder.join("labels.csv"), &folder.join("tree.csv"), sensors).ok()?;
+        Some(finished.of(task, Body { truth, maps }))
+    }
+}
+
+impl MappedFiles {
+    fn of(self, task: &Task, body: Body) -> KeptBody {
+        let files = self.files.into_iter().map(|(name, _)| format!("{}/{name}", task.name)).collect();
+        KeptBody { body, facts: self.facts, files }
+    }
+}
+
+/// Stages 1 to 5 of a task; of tasks that share a movement, the first one simulates it.
+fn map(task: &Task, felt: &mut Felt, progress: &TaskProgress) -> Result<MappedBody, Stop> {
+    let Task { settings, simulation, .. } = task;
+    let felt = felt.get_or_insert_with(|| {
+        let samples = settings.physics.samples(settings.sense.interval) + 1;
+        let seen = Cell::new(0);
+        let tick = || {
+            let (before, now) = (seen.get(), seen.get() + 1);
+            seen.set(now);
+            progress.add(MOVEMENT * now as u64 / samples as u64 - MOVEMENT * before as u64 / samples as u64);
+        };
+        feel(settings, *simulation, &tick).map_err(|error| error.to_string())
+    });
+    let felt = felt.as_ref().map_err(|reason| Stop::Failed(reason.clone()))?;
+    Ok(map_felt(felt, settings, &task.dimensions())?)
+}
+
+impl Task {
+    /// d of its body maps, rising.
+    fn dimensions(&self) -> Vec<usize> {
+        let inferred = self.conditions.iter().map(|condition| condition.dimension);
+        let mut all: Vec<usize> = inferred.chain(self.clustered.iter().copied()).collect();
+        all.sort_unstable();
+        all.dedup();
+        all
+    }
+
+    /// Steps of the progress bar: one for each chain, and some for the movement.
+    fn length(&self) -> u64 {
+        MOVEMENT + (self.conditions.len() * self.settings.schema.chains) as u64
+    }
+}
+
+/// Progress of one task, of which some may be done already, or never.
+struct TaskProgress<'a> {
+    bar: &'a ProgressBar,
+    done: AtomicU64,
+}
+
+impl TaskProgress<'_> {
+    fn add(&self, steps: u64) {
+        self.done.fetch_add(steps, Ordering::Relaxed);
+        self.bar.inc(steps);
+    }
+
+    fn complete(&self, task: &Task) {
+        self.bar.inc(task.length().saturating_sub(self.done.load(Ordering::Relaxed)));
+    }
+}
+
+/// Places of the tasks in their list, those together that need the same pressures.
+fn by_movement(tasks: &[Task]) -> Vec<Vec<usize>> {
+    let mut movements: Vec<Vec<usize>> = Vec::new();
+    let mut places: HashMap<String, usize> = HashMap::new();
+    for (at, Task { settings, simulation, .. }) in tasks.iter().enumerate() {
+        let Settings { agent, skin, motion, physics, sense, experiment, .. } = settings;
+        let movement = (agent, skin, motion, physics, sense, simulation, experiment.seed);
+        let movement = serde_json::to_string(&movement).expect("settings are plain data");
+        let place = *places.entry(movement).or_insert_with(|| {
+            movements.push(Vec::new());
+            movements.len() - 1
+        });
+        movements[place].push(at);
+    }
+    movements
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tasks_that_share_a_movement_are_together_and_no_others() {
+        let task = |change: &dyn Fn(&mut Settings), simulation| {
+            let mut settings = Settings::paper();
+            change(&mut settings);
+            let (conditions, clustered) = (Vec::new(), Vec::new());
+            Task { name: String::new(), settings, simulation, conditions, clustered, keep: Keep::Nothing }
+        };
+        let tasks = [
+            task(&|_| (), 1),
+            task(&|settings| settings.agent.gap = 0.01, 1),
+            task(&|settings| settings.quantise.levels = 7, 1),
+            task(&|_| (), 2),
+            task(&|settings| settings.motion.coordination = 0.5, 1),
+            task(&|settings| settings.experiment.seed += 1, 1),
+            task(&|settings| settings.schema.chains = 3, 2),
+        ];
+        assert_eq!(by_movement(&tasks), [vec![0, 2], vec![1], vec![3, 6], vec![4], vec![5]]);
+    }
+}

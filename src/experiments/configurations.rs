@@ -1,0 +1,101 @@
+//! Run several configurations on several simulations, and gather what each of them gave.
+
+use std::path::Path;
+
+use super::batch::{Batch, Found, Keep, Task};
+use super::progress::progress;
+use crate::analysis::conditions::Conditions;
+use crate::files::checkpoint::Checkpoints;
+use crate::files::{FileError, sha256_of_text};
+use crate::pipeline::{Condition, Record};
+use crate::settings::Settings;
+use crate::stages::schema::Model;
+
+/// What a configuration gave in its `experiment.simulations` simulations.
+#[derive(Debug, Clone, Default)]
+pub struct Outcome {
+    /// All draws, evaluated, of the tasks that did not fail.
+    pub records: Vec<Record>,
+    /// Tasks that failed: unstable movement, or distances without a map of the dimensions.
+    pub failures: Vec<Failure>,
+}
+
+/// A task that failed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Failure {
+    /// p.
+    pub coordination: f64,
+    /// Why.
+    pub reason: String,
+}
+
+impl Outcome {
+    /// The draws that `counts` keeps, by condition, with intervals over simulations.
+    pub fn conditions(&self, settings: &Settings, counts: impl Fn(&Record) -> bool) -> Conditions {
+        let records = self.records.iter().copied().filter(counts).collect();
+        Conditions::new(records, settings.experiment.simulations, settings.experiment.seed)
+    }
+}
+
+/// Runs all configurations: each at its own p with both mixtures at each of `experiment.dimensions`, and at the other
+/// `experiment.coordinations` with the DPGMM-LJ at `experiment.dimension`. Checkpoints stay in `out`/checkpoints, for a
+/// condition is the same in every round of a search, and in every study of the same program.
+///
+/// # Errors
+/// If a checkpoint cannot be written. A configuration that fails is an outcome.
+pub fn run(configurations: &[Settings], out: &Path, name: &str) -> Result<Vec<Outcome>, FileError> {
+    let checkpoints = Checkpoints::new(out, &"study");
+    let mut tasks = Vec::new();
+    let mut of_configuration = Vec::new();
+    for (at, settings) in configurations.iter().enumerate() {
+        for coordination in coordinations(settings) {
+            for simulation in 1..=settings.experiment.simulations {
+                tasks.push(task(settings, coordination, simulation));
+                of_configuration.push((at, coordination));
+            }
+        }
+    }
+    let bar = progress(Batch::length(&tasks), name.to_owned());
+    let found = Batch { out, checkpoints: &checkpoints, bar: &bar }.side_by_side(&tasks)?;
+    bar.finish_and_clear();
+    let mut outcomes = vec![Outcome::default(); configurations.len()];
+    for ((at, coordination), outcome) in of_configuration.into_iter().zip(found) {
+        match outcome {
+            Ok(Found { records, .. }) => outcomes[at].records.extend(records),
+            Err(reason) => outcomes[at].failures.push(Failure { coordination, reason }),
+        }
+    }
+    Ok(outcomes)
+}
+
+/// Its own p and those of experiment 2, rising.
+fn coordinations(settings: &Settings) -> Vec<f64> {
+    let mut all = settings.experiment.coordinations.clone();
+    all.push(settings.motion.coordination);
+    all.sort_by(f64::total_cmp);
+    all.dedup();
+    all
+}
+
+/// One simulation of a configuration at one p, with a name that says all that its results depend on.
+fn task(settings: &Settings, coordination: f64, simulation: usize) -> Task {
+    let experiment = &settings.experiment;
+    let at = |model, dimension| Condition { model, coordination, dimension };
+    let last = at(Model::DpgmmLj, experiment.dimension);
+    let mut conditions = Vec::new();
+    if settings.motion.coordination == coordination {
+        conditions.extend(experiment.dimensions.iter().flat_map(|&d| Model::ALL.map(|model| at(model, d))));
+    }
+    if !conditions.contains(&last) {
+        conditions.push(last);
+    }
+    let mut settings = settings.clone();
+    settings.motion.coordination = coordination;
+    // What else is run does not change the results.
+    settings.experiment.simulations = 1;
+    settings.experiment.dimensions = vec![last.dimension];
+    settings.experiment.coordinations = vec![coordination];
+    let key = serde_json::to_string(&(&settings, simulation)).expect("settings are plain data");
+    let name = sha256_of_text(&key);
+    Task { name, settings, simulation, conditions, clustered: Vec::new(), keep: Keep::Nothing }
+}

@@ -1,0 +1,12 @@
+//! Run the paper's experiments, the search for a default, and the study of what the paper leaves open.
+
+mod batch;
+mod configurations;
+mod design;
+mod error;
+pub mod progress;
+pub mod reproduce;
+pub mod search;
+mod seeds;
+pub mod sensitivity;
+pub mod verify;

@@ -1,0 +1,217 @@
+//! Run all simulations of an experiment, judge the claims, and write everything into one folder.
+
+use std::path::Path;
+use std::time::{Instant, SystemTime};
+
+use serde_json::{Value, json};
+
+use super::super::batch::{Batch, Found, Keep, KeptBody, Task};
+use super::super::error::ExperimentError;
+use super::super::progress::progress;
+use super::run::{Run, preamble};
+use crate::analysis::claims::{Judged, judge};
+use crate::analysis::conditions::{Conditions, baseline_estimates};
+use crate::analysis::measure::Evidence;
+use crate::analysis::published::{Experiment, figures};
+use crate::files::FileError;
+use crate::files::checkpoint::Checkpoints;
+use crate::files::manifest::{HashedFile, Manifest, write_circumstances};
+use crate::files::provenance::Provenance;
+use crate::files::result_folder::ResultFolder;
+use crate::numerics::rng::stream;
+use crate::pipeline::Condition;
+use crate::report::claims_table::{comparison, markdown, rows};
+use crate::report::figures::Figures;
+use crate::report::{page, plot};
+use crate::settings::Settings;
+use crate::stages::agent::Agent;
+use crate::stages::schema::Model;
+use crate::stages::simulate::simulate;
+
+/// Runs an experiment: all its simulations, conditions and figures. Returns the judged claims.
+///
+/// A run that was interrupted goes on from what it finished, and ends with the same files.
+///
+/// # Errors
+/// If a stage fails or a file cannot be written.
+pub fn reproduce(run: &Run) -> Result<Vec<Judged>, ExperimentError> {
+    let begun = (SystemTime::now(), Instant::now());
+    let mut folder = ResultFolder::new(run.out);
+    folder.remove(made_anew())?;
+    let checkpoints = Checkpoints::new(run.out, &(run.experiment, run.settings));
+    let tasks = tasks(run);
+    let bar = progress(Batch::length(&tasks), "movement".to_owned());
+    let batch = Batch { out: run.out, checkpoints: &checkpoints, bar: &bar };
+    let movements = movements(run)?;
+    let mut found = batch.one_by_one(&tasks)?;
+    bar.finish_and_clear();
+    for kept in found.iter_mut().filter_map(|found| found.kept.as_mut()) {
+        folder.remember(std::mem::take(&mut kept.files));
+    }
+
+    let evidence = write_draws(run, &found, &mut folder)?;
+    write_figures(run, &tasks, &found, &movements, &evidence, &mut folder)?;
+    let judged = judge(run.experiment, &evidence);
+    folder.write_rows("claims.csv", rows(&judged))?;
+    folder.write_text("claims.md", &markdown(&preamble(run), &judged))?;
+    folder.write_manifest(manifest(run, &tasks, &found, &judged)?)?;
+    page::write(run.out)?;
+    write_circumstances(run.out, begun)?;
+    checkpoints.clear()?;
+    Ok(judged)
+}
+
+/// Files of an earlier run that must not stand beside those of this one while it works.
+fn made_anew() -> impl Iterator<Item = String> {
+    let pictures = figures()
+        .into_iter()
+        .flat_map(|figure| ["csv", "svg"].map(|extension| format!("figures/{}.{extension}", figure.name)));
+    let names = ["claims.csv", "claims.md", "report.html", "manifest.json", "run.json"];
+    names.map(str::to_owned).into_iter().chain(pictures)
+}
+
+/// One task for each simulation, in experiment 2 at each p.
+fn tasks(run: &Run) -> Vec<Task> {
+    let experiment = &run.settings.experiment;
+    let simulations = 1..=experiment.simulations;
+    let task = |name: String, coordination: f64, simulation, dimensions: &[usize], models: &[Model]| {
+        let mut settings = run.settings.clone();
+        settings.motion.coordination = coordination;
+        let at = |dimension: &usize| {
+            let dimension = *dimension;
+            models.iter().map(move |&model| Condition { model, coordination, dimension })
+        };
+        let conditions = dimensions.iter().flat_map(at).collect();
+        let (clustered, keep) = (Vec::new(), Keep::Maps);
+        Task { name, settings, simulation, conditions, clustered, keep }
+    };
+    match run.experiment {
+        Experiment::Exp1 => simulations
+            .map(|simulation| {
+                let name = format!("simulation-{simulation}");
+                let p = run.settings.motion.coordination;
+                let task = task(name, p, simulation, &experiment.dimensions, &Model::ALL);
+                Task { clustered: experiment.dimensions.clone(), keep: Keep::MapsAndDistances, ..task }
+            })
+            .collect(),
+        Experiment::Exp2 => experiment
+            .coordinations
+            .iter()
+            .flat_map(|&p| simulations.clone().map(move |simulation| (p, simulation)))
+            .map(|(p, simulation)| {
+                let name = format!("p-{p}/simulation-{simulation}");
+                // For each p, distances would come to a quarter of a gigabyte; the body maps hold all that
+                // the inference sees.
+                task(name, p, simulation, &[experiment.dimension], &[Model::DpgmmLj])
+            })
+            .collect(),
+    }
+}
+
+/// Writes all draws, and in experiment 1 all clusterings; returns the estimates over them.
+fn write_draws(run: &Run, found: &[Found], folder: &mut ResultFolder) -> Result<Evidence, FileError> {
+    let records: Vec<_> = found.iter().flat_map(|found| &found.records).copied().collect();
+    folder.write_rows("samples.csv", &records)?;
+    let baselines: Vec<_> = found.iter().flat_map(|found| &found.baselines).copied().collect();
+    if run.experiment == Experiment::Exp1 {
+        folder.write_rows("baselines.csv", &baselines)?;
+    }
+    let experiment = &run.settings.experiment;
+    Ok(Evidence {
+        conditions: Conditions::new(records, experiment.simulations, experiment.seed),
+        baselines: baseline_estimates(&baselines),
+    })
+}
+
+/// Writes the table and the picture of every figure that the experiment shows.
+fn write_figures(
+    run: &Run,
+    tasks: &[Task],
+    found: &[Found],
+    movements: &Option<Movements>,
+    evidence: &Evidence,
+    folder: &mut ResultFolder,
+) -> Result<(), FileError> {
+    let best = evidence.conditions.best();
+    let mut figures = Figures::new(folder)?;
+    if let Some(Movements { agent, trajectories, interval }) = movements {
+        figures.agent(agent, &trajectories[0].1.poses[..agent.parts.len()])?;
+        figures.angles(trajectories, *interval)?;
+    }
+    match run.experiment {
+        Experiment::Exp1 => {
+            for (condition, draw) in tasks[0].conditions.iter().zip(&found[0].best) {
+                if let Some(KeptBody { body, .. }) = &found[0].kept
+                    && let Some(maps) = &body.maps
+                    && condition.model == Model::DpgmmLj
+                    && (2..=3).contains(&condition.dimension)
+                {
+                    figures.map(&maps.in_dims(condition.dimension), &body.truth.labels, draw)?;
+                }
+            }
+            figures.baselines(&evidence.baselines)?;
+            figures.by_dimension(&evidence.conditions, &best)?;
+        }
+        Experiment::Exp2 => figures.by_coordination(&evidence.conditions, &best)?,
+    }
+    let pictures = plot::render(&folder.path().join("figures"))?;
+    folder.remember(pictures.into_iter().map(|name| format!("figures/{name}")));
+    Ok(())
+}
+
+/// What figures 4 and 5 show: the agent, and how it moves at first at each p of experiment 2.
+struct Movements {
+    agent: Agent,
+    trajectories: Vec<(f64, crate::stages::simulate::Trajectory)>,
+    interval: f64,
+}
+
+/// The movements that experiment 1 shows.
+fn movements(run: &Run) -> Result<Option<Movements>, ExperimentError> {
+    // Some twenty epochs, s, and a sample every so often, s.
+    const SHOWN: f64 = 100.0;
+    const EVERY: f64 = 0.2;
+    if run.experiment == Experiment::Exp2 {
+        return Ok(None);
+    }
+    let Settings { agent, skin, motion, physics, sense, experiment, .. } = run.settings;
+    let agent = Agent::new(agent, skin);
+    let interval = sense.interval * (EVERY / sense.interval).round().max(1.0);
+    let (mut motion, mut physics) = (motion.clone(), physics.clone());
+    physics.duration = physics.duration.min(SHOWN.max(interval));
+    let mut trajectories = Vec::new();
+    for &coordination in &experiment.coordinations {
+        motion.coordination = coordination;
+        let mut rng = stream(experiment.seed, 1, "motion", 0);
+        let trajectory = simulate(&agent, &motion, &physics, interval, &mut rng, &|| ())
+            .map_err(|error| ExperimentError::Stage(error.to_string()))?;
+        trajectories.push((coordination, trajectory));
+    }
+    Ok(Some(Movements { agent, trajectories, interval }))
+}
+
+/// What the results depend on; their hashes come with the folder.
+fn manifest(run: &Run, tasks: &[Task], found: &[Found], judged: &[Judged]) -> Result<Manifest, FileError> {
+    let settings = run.settings;
+    let hash = |path: &Path| HashedFile::new(&path.display().to_string(), path);
+    let inputs = run.settings_file.into_iter().map(hash).collect::<Result<_, _>>()?;
+    let body = |(task, found): (&Task, &Found)| -> Value {
+        json!({
+            "coordination": task.settings.motion.coordination,
+            "simulation": task.simulation,
+            "facts": found.kept.as_ref().map(|kept| &kept.facts),
+        })
+    };
+    Ok(Manifest {
+        experiment: Some(run.experiment.name().to_owned()),
+        summary: Some(preamble(run)),
+        headline: judged.iter().filter_map(comparison).collect(),
+        quick: Some(run.quick),
+        seed: settings.experiment.seed,
+        provenance: Provenance::here(),
+        bodies: Some(tasks.iter().zip(found).map(body).collect()),
+        settings: Some(serde_json::to_value(settings).expect("settings are plain data")),
+        inputs: Some(inputs),
+        ..Manifest::default()
+    })
+}

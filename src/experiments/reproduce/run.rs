@@ -1,0 +1,69 @@
+//! Say which experiment is run, how, and where to.
+
+use std::path::Path;
+
+use super::super::seeds::is_held_out;
+use crate::analysis::published::Experiment;
+use crate::settings::Settings;
+
+/// How an experiment is run.
+#[derive(Debug)]
+pub struct Run<'a> {
+    /// The experiment.
+    pub experiment: Experiment,
+    /// Its settings.
+    pub settings: &'a Settings,
+    /// The user's settings file, for the manifest.
+    pub settings_file: Option<&'a Path>,
+    /// Whether it is a small run that only shows the program working.
+    pub quick: bool,
+    /// The folder for all files.
+    pub out: &'a Path,
+}
+
+impl Run<'_> {
+    /// The largest d of its body maps.
+    pub fn largest_dimension(&self) -> usize {
+        let settings = &self.settings.experiment;
+        match self.experiment {
+            Experiment::Exp1 => *settings.dimensions.last().expect("validated as not empty"),
+            Experiment::Exp2 => settings.dimension,
+        }
+    }
+}
+
+/// Conditions, amounts, seed and revision of a run, in words: what stands above the table of claims.
+pub fn preamble(run: &Run) -> String {
+    let Settings { motion, schema, experiment, .. } = run.settings;
+    let what = match run.experiment {
+        Experiment::Exp1 => {
+            format!("Experiment 1: p = {}, d = {}", motion.coordination, list(&experiment.dimensions))
+        }
+        Experiment::Exp2 => {
+            format!("Experiment 2: p = {}, d = {}", list(&experiment.coordinations), experiment.dimension)
+        }
+    };
+    let caution = if run.quick { " Quick run: its numbers are no replication." } else { "" };
+    let seed = match is_held_out(experiment.seed) {
+        true => "held out: neither the search for the default settings nor the study of them used it",
+        false => "used by the search for the default settings or the study of them",
+    };
+    let scope = match experiment.simulations {
+        1 => "Intervals are over the chains of this one simulation; another can differ by more.",
+        _ => "Intervals are over simulations (bootstrap).",
+    };
+    format!(
+        "{what}; {} simulation(s), {} chains of {} sweeps for each condition, seed {} ({seed}), revision {}.{caution} {scope} \
+         Rows marked extension count, of each simulation, only the draw of highest log posterior, which the paper does \
+         not.",
+        experiment.simulations,
+        schema.chains,
+        schema.sweeps,
+        experiment.seed,
+        env!("BODYSCHEMA_REVISION"),
+    )
+}
+
+fn list<T: ToString>(values: &[T]) -> String {
+    values.iter().map(T::to_string).collect::<Vec<_>>().join(", ")
+}

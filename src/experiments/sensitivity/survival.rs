@@ -1,0 +1,93 @@
+//! Say whether the published tree accuracy survives another value of an open setting.
+
+use super::table::Row;
+
+/// Whether the published tree accuracy survives a value.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Survival {
+    /// The rate is within the range that counts as reproduced.
+    Yes,
+    /// The rate is not, but its interval reaches it.
+    Perhaps,
+    /// The whole interval lies above.
+    Higher,
+    /// The whole interval lies below.
+    Lower,
+    /// There is no eligible draw.
+    Nothing,
+}
+
+impl Survival {
+    const ALL: [Self; 5] = [Self::Yes, Self::Perhaps, Self::Higher, Self::Lower, Self::Nothing];
+
+    /// Given the row of its tree accuracy and the range that counts as reproduced.
+    pub fn of(row: Option<&Row>, (low, high): (f64, f64)) -> Self {
+        let Some((rate, row)) = row.and_then(|row| Some((row.estimate?, row))) else { return Self::Nothing };
+        let (least, most) = row.cells.low.zip(row.cells.high).unwrap_or((rate, rate));
+        match () {
+            () if (low..=high).contains(&rate) => Self::Yes,
+            () if least > high => Self::Higher,
+            () if most < low => Self::Lower,
+            () => Self::Perhaps,
+        }
+    }
+
+    /// As written on the page.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Yes => "yes",
+            Self::Perhaps => "perhaps",
+            Self::Higher => "no, higher",
+            Self::Lower => "no, lower",
+            Self::Nothing => "no, no eligible draw",
+        }
+    }
+}
+
+/// How many of each kind.
+pub fn counts(survivals: &[Survival]) -> String {
+    let count = |kind: Survival| survivals.iter().filter(|found| **found == kind).count();
+    let kinds = Survival::ALL.into_iter().map(|kind| (kind, count(kind))).filter(|(_, count)| *count > 0);
+    kinds.map(|(kind, count)| format!("{count} × {}", kind.name())).collect::<Vec<_>>().join("; ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::design::DEFAULT;
+    use super::super::table::Measure;
+    use super::*;
+    use crate::analysis::cells::EstimateCells;
+    use crate::stages::schema::Model;
+
+    #[test]
+    fn the_published_rate_survives_where_the_range_is_met_or_reached() {
+        let row = |estimate, interval: Option<(f64, f64)>| {
+            let (low, high) = interval.unzip();
+            Row {
+                factor: DEFAULT.to_owned(),
+                value: String::new(),
+                coordination: 0.9,
+                dimension: 14,
+                model: Model::DpgmmLj,
+                measure: Measure::Tree,
+                estimate,
+                cells: EstimateCells { n: 10, low, high, simulations: 2, lowest: None, highest: None },
+                difference: None,
+                difference_low: None,
+                difference_high: None,
+                failed: 0,
+                failure: String::new(),
+            }
+        };
+        let of = |estimate, interval| Survival::of(Some(&row(estimate, interval)), (0.7, 0.9));
+        assert_eq!(of(Some(0.8), Some((0.1, 1.0))), Survival::Yes);
+        assert_eq!(of(Some(0.95), Some((0.85, 1.0))), Survival::Perhaps);
+        assert_eq!(of(Some(0.95), Some((0.91, 1.0))), Survival::Higher);
+        assert_eq!(of(Some(0.4), Some((0.2, 0.6))), Survival::Lower);
+        assert_eq!(of(Some(0.4), None), Survival::Lower);
+        assert_eq!(of(None, None), Survival::Nothing);
+        assert_eq!(Survival::of(None, (0.7, 0.9)), Survival::Nothing);
+        let all = [Survival::Yes, Survival::Lower, Survival::Yes];
+        assert_eq!(counts(&all), "2 × yes; 1 × no, lower");
+    }
+}

@@ -1,0 +1,150 @@
+//! Finished parts of an experiment or a study → files that an interrupted run goes on from.
+//!
+//! A part is taken up only if its file is whole (by its hash) and of the same program, settings and seed, so
+//! that nothing stale or half-written gets into a result.
+
+use std::fs;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use super::error::FileError;
+use super::hash::{sha256, sha256_of_text};
+use super::whole::write_text;
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+use serde_json::value::RawValue;
+
+/// The checkpoints of one run.
+#[derive(Debug)]
+pub struct Checkpoints {
+    folder: PathBuf,
+    /// What the results depend on.
+    key: String,
+    /// Whether the user was told that parts are taken up, and that others are of another run.
+    told: [AtomicBool; 2],
+}
+
+#[derive(Serialize, Deserialize)]
+struct File {
+    key: String,
+    sha256: String,
+    content: Box<RawValue>,
+}
+
+impl Checkpoints {
+    /// Those in the folder `out` of an experiment, of a run whose results depend on `inputs` alone.
+    pub fn new(out: &Path, inputs: &impl Serialize) -> Self {
+        let inputs = serde_json::to_string(inputs).expect("inputs are plain data");
+        let key = sha256_of_text(&format!("{}{inputs}", program()));
+        Self { folder: out.join("checkpoints"), key, told: Default::default() }
+    }
+
+    /// What an earlier run found in a part of this name, if it finished it.
+    pub fn recall<T: DeserializeOwned>(&self, part: &str) -> Option<T> {
+        let path = self.path(part);
+        let text = match fs::read_to_string(&path) {
+            Ok(text) => text,
+            Err(error) if error.kind() == ErrorKind::NotFound => return None,
+            Err(error) => return self.damaged(&path, &error.to_string()),
+        };
+        let file: File = match serde_json::from_str(&text) {
+            Ok(file) => file,
+            Err(_) => return self.damaged(&path, "is no checkpoint"),
+        };
+        if file.sha256 != sha256_of_text(file.content.get()) {
+            return self.damaged(&path, "does not have the hash that it states");
+        }
+        if file.key != self.key {
+            if !self.told[1].swap(true, Ordering::Relaxed) {
+                eprintln!(
+                    "bodyschema: {}: parts of a run with other settings or of another program are not used",
+                    self.folder.display()
+                );
+            }
+            return None;
+        }
+        let Ok(content) = serde_json::from_str(file.content.get()) else {
+            return self.damaged(&path, "holds something else");
+        };
+        if !self.told[0].swap(true, Ordering::Relaxed) {
+            eprintln!("bodyschema: {}: going on from what an earlier run finished", self.folder.display());
+        }
+        Some(content)
+    }
+
+    fn damaged<T>(&self, path: &Path, what: &str) -> Option<T> {
+        eprintln!("bodyschema: {}: {what}; this part is done again", path.display());
+        None
+    }
+
+    /// Keeps what was found in a part.
+    ///
+    /// # Errors
+    /// If it cannot be written.
+    pub fn keep<T: Serialize>(&self, part: &str, content: &T) -> Result<(), FileError> {
+        let content = serde_json::value::to_raw_value(content).expect("results are plain data");
+        let file = File { key: self.key.clone(), sha256: sha256_of_text(content.get()), content };
+        let text = serde_json::to_string(&file).expect("a checkpoint is plain data");
+        write_text(&self.path(part), &text)
+    }
+
+    /// Removes all of them, when the run is finished.
+    ///
+    /// # Errors
+    /// If they cannot be removed.
+    pub fn clear(&self) -> Result<(), FileError> {
+        match fs::remove_dir_all(&self.folder) {
+            Err(error) if error.kind() != ErrorKind::NotFound => {
+                Err(FileError::new(&self.folder, format!("cannot be removed: {error}")))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn path(&self, part: &str) -> PathBuf {
+        self.folder.join(format!("{part}.json"))
+    }
+}
+
+/// What tells this program from any other: the hash of its own file, since two builds of one revision may
+/// differ.
+fn program() -> String {
+    let own = std::env::current_exe().ok().and_then(|path| sha256(&path).ok());
+    own.unwrap_or_else(|| env!("BODYSCHEMA_REVISION").to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_part_is_taken_up_whole_and_of_the_same_run_or_not_at_all() {
+        let folder = tempfile::tempdir().unwrap();
+        // The hash of this program is slow to find again and again.
+        let same = Checkpoints::new(folder.path(), &("settings", 1));
+        let found = vec![(1.0_f64 / 3.0, Some("d")), (5e-324, None), (-0.0, Some("\u{e9}\n"))];
+        same.keep("a/b", &found).unwrap();
+        let recalled: Option<Vec<(f64, Option<String>)>> = same.recall("a/b");
+        let bits = recalled.unwrap().into_iter().map(|(number, _)| number.to_bits());
+        assert!(bits.eq(found.iter().map(|(number, _)| number.to_bits())));
+        assert!(same.recall::<Vec<(f64, Option<String>)>>("a/c").is_none(), "never kept");
+        let other = Checkpoints::new(folder.path(), &("settings", 2));
+        assert!(other.recall::<Vec<(f64, Option<String>)>>("a/b").is_none(), "other settings");
+        assert!(same.recall::<String>("a/b").is_none(), "something else");
+
+        let path = folder.path().join("checkpoints/a/b.json");
+        let whole = fs::read_to_string(&path).unwrap();
+        for end in (0..whole.len()).filter(|end| whole.is_char_boundary(*end)) {
+            fs::write(&path, &whole[..end]).unwrap();
+            assert!(same.recall::<Vec<(f64, Option<String>)>>("a/b").is_none(), "cut at {end}");
+        }
+        fs::write(&path, whole.replace("0.333", "0.334")).unwrap();
+        assert!(same.recall::<Vec<(f64, Option<String>)>>("a/b").is_none(), "changed");
+        fs::write(&path, [0xff, 0xfe]).unwrap();
+        assert!(same.recall::<Vec<(f64, Option<String>)>>("a/b").is_none(), "no text");
+        same.clear().unwrap();
+        same.clear().unwrap();
+        assert!(!folder.path().join("checkpoints").exists());
+    }
+}

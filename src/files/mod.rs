@@ -1,0 +1,16 @@
+//! Files that NumPy and a spreadsheet open: the input and output of every stage, and the folders of finished runs.
+
+pub(crate) mod checkpoint;
+mod error;
+mod hash;
+pub(crate) mod manifest;
+pub mod npy;
+pub(crate) mod provenance;
+pub(crate) mod result_folder;
+pub mod tables;
+mod whole;
+
+pub use self::error::{FileError, one_line};
+pub use self::hash::sha256;
+pub(crate) use self::hash::sha256_of_text;
+pub use self::whole::{prepare_folder, read_text, write_text, write_whole};

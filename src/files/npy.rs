@@ -1,0 +1,279 @@
+//! Matrices as NumPy's `.npy` files: tactile pressures, symbols, distances, body maps, assignments.
+
+use std::fs::File;
+use std::io::{self, BufRead, BufReader};
+use std::path::Path;
+
+use npyz::{DType, Deserialize, NpyFile, Order, TypeChar, WriterBuilder};
+
+use super::error::FileError;
+use super::whole::write_whole;
+use crate::stages::body_map::BodyMap;
+use crate::stages::distance::{Distances, MOST_SENSORS};
+use crate::stages::quantise::Symbols;
+use crate::stages::schema::Draw;
+use crate::stages::sense::Tactile;
+
+/// Writes pressures as float32, T × M. The file is in Fortran order, one sensor's series after another's,
+/// which NumPy reads as any other.
+pub fn write_tactile(path: &Path, tactile: &Tactile) -> Result<(), FileError> {
+    write(path, [tactile.samples, tactile.sensors()], Order::Fortran, tactile.pressures.iter().copied())
+}
+
+/// Writes distances as float64, M × M.
+pub fn write_distances(path: &Path, distances: &Distances) -> Result<(), FileError> {
+    write(path, [distances.sensors; 2], Order::C, distances.values.iter().copied())
+}
+
+/// Writes a body map as float64, M × d.
+pub fn write_body_map(path: &Path, map: &BodyMap) -> Result<(), FileError> {
+    write(path, [map.points(), map.dims], Order::C, map.coordinates.iter().copied())
+}
+
+/// Writes the component of each sensor as int32, draws × M.
+pub fn write_assignments(path: &Path, draws: &[Draw]) -> Result<(), FileError> {
+    let sensors = draws.first().map_or(0, |draw| draw.labels.len());
+    let labels = draws.iter().flat_map(|draw| draw.labels.iter().map(|&label| label as i32));
+    write(path, [draws.len(), sensors], Order::C, labels)
+}
+
+fn write<T: npyz::AutoSerialize>(
+    path: &Path,
+    shape: [usize; 2],
+    order: Order,
+    values: impl Iterator<Item = T>,
+) -> Result<(), FileError> {
+    write_whole(path, |file| {
+        let shape = shape.map(|length| length as u64);
+        let mut writer =
+            npyz::WriteOptions::new().default_dtype().shape(&shape).order(order).writer(file).begin_nd()?;
+        writer.extend(values)?;
+        writer.finish()
+    })
+}
+
+/// Reads pressures, T × M, of float32, float64 or any integer type; each must be finite and not negative.
+pub fn read_tactile(path: &Path) -> Result<Tactile, FileError> {
+    let matrix = Matrix::read(path, Order::Fortran, |value| match value {
+        value if !value.is_finite() => Err("a pressure must be a finite number"),
+        value if value < 0.0 => Err("a pressure must not be negative (if these are symbols, say --symbols)"),
+        value if value > f64::from(f32::MAX) => Err("a pressure must be in the range of float32"),
+        value => Ok(value as f32),
+    })?;
+    check_sensors(path, &matrix)?;
+    Ok(Tactile { samples: matrix.rows, pressures: matrix.values })
+}
+
+/// A matrix by sensors and times, in place of times and sensors, asks for distances beyond any memory.
+fn check_sensors<T>(path: &Path, matrix: &Matrix<T>) -> Result<(), FileError> {
+    if matrix.columns <= MOST_SENSORS {
+        return Ok(());
+    }
+    let message = format!(
+        "has {} rows and {} columns; a row is a time and a column a sensor, of which there may be {MOST_SENSORS}: \
+         is it transposed?",
+        matrix.rows, matrix.columns
+    );
+    Err(FileError::new(path, message))
+}
+
+/// Reads symbols, T × M, of any type with whole values from 0 to 255.
+pub fn read_symbols(path: &Path) -> Result<Symbols, FileError> {
+    let matrix = Matrix::read(path, Order::Fortran, |value| {
+        let symbol = value as u8;
+        if f64::from(symbol) == value {
+            Ok(symbol)
+        } else {
+            Err("a symbol must be a whole number from 0 to 255")
+        }
+    })?;
+    check_sensors(path, &matrix)?;
+    // Two at least: a single symbol is one that never changes.
+    let levels = 2.max(1 + matrix.values.iter().copied().max().map_or(0, usize::from));
+    Ok(Symbols { samples: matrix.rows, levels, values: matrix.values })
+}
+
+/// Reads distances, M × M: finite, not negative, symmetric, with a zero diagonal.
+pub fn read_distances(path: &Path) -> Result<Distances, FileError> {
+    let matrix = Matrix::read(path, Order::C, |value| match value {
+        value if !value.is_finite() => Err("a distance must be a finite number"),
+        value if value < 0.0 => Err("a distance must not be negative"),
+        value => Ok(value),
+    })?;
+    let sensors = matrix.rows;
+    if matrix.columns != sensors {
+        let message = format!("distances must be a square matrix, but it is {sensors} x {}", matrix.columns);
+        return Err(FileError::new(path, message));
+    }
+    let distances = Distances { sensors, values: matrix.values };
+    for i in 0..sensors {
+        if distances.get(i, i) != 0.0 {
+            let message = format!("row {i}, column {i}: {}; the diagonal must be 0", distances.get(i, i));
+            return Err(FileError::new(path, message));
+        }
+        for j in 0..i {
+            let (lower, upper) = (distances.get(i, j), distances.get(j, i));
+            if (lower - upper).abs() > 1e-9 * (lower + upper) {
+                let message = format!(
+                    "row {i}, column {j}: {lower}, but row {j}, column {i}: {upper}; distances must be symmetric"
+                );
+                return Err(FileError::new(path, message));
+            }
+        }
+    }
+    Ok(distances)
+}
+
+/// Reads a body map, M × d; all coordinates must be finite.
+pub fn read_body_map(path: &Path) -> Result<BodyMap, FileError> {
+    let matrix = Matrix::read(path, Order::C, |value| {
+        if value.is_finite() { Ok(value) } else { Err("a coordinate must be a finite number") }
+    })?;
+    Ok(BodyMap { dims: matrix.columns, coordinates: matrix.values })
+}
+
+struct Matrix<T> {
+    rows: usize,
+    columns: usize,
+    values: Vec<T>,
+}
+
+impl<T: Copy> Matrix<T> {
+    /// Reads a matrix of float32, float64 or any integer type into the order that is asked for, each value checked by `convert`.
+    fn read(
+        path: &Path,
+        wanted: Order,
+        convert: impl Fn(f64) -> Result<T, &'static str>,
+    ) -> Result<Self, FileError> {
+        let broken = |error: io::Error| match error.kind() {
+            io::ErrorKind::NotFound => FileError::new(path, "no such file"),
+            _ => FileError::new(path, format!("cannot be read as a .npy file: {error}")),
+        };
+        let file = File::open(path).map_err(broken)?;
+        let bytes = file.metadata().map_err(broken)?.len();
+        let mut reader = BufReader::with_capacity(1 << 20, file);
+        check_header(reader.fill_buf().map_err(broken)?).map_err(|message| FileError::new(path, message))?;
+        let npy = NpyFile::new(reader).map_err(broken)?;
+
+        let &[rows, columns] = npy.shape() else {
+            let message = format!("must have two dimensions, but its shape is {:?}", npy.shape());
+            return Err(FileError::new(path, message));
+        };
+        if rows == 0 || columns == 0 {
+            return Err(FileError::new(path, format!("is empty: its shape is {rows} x {columns}")));
+        }
+        let dtype = npy.dtype();
+        let unusable = || {
+            FileError::new(
+                path,
+                format!("must hold float32, float64 or integers, but its dtype is {}", dtype.descr()),
+            )
+        };
+        let DType::Plain(kind) = &dtype else { return Err(unusable()) };
+        let width = kind.num_bytes().ok_or_else(unusable)? as u64;
+        // Before anything is allocated: a header can promise any size.
+        if rows.checked_mul(columns).and_then(|n| n.checked_mul(width)).is_none_or(|size| size > bytes) {
+            let message = format!(
+                "is truncated: its header promises {rows} x {columns} values, the file has {bytes} bytes"
+            );
+            return Err(FileError::new(path, message));
+        }
+        let (rows, columns, order) = (rows as usize, columns as usize, npy.order());
+        let place = |at: usize| match order {
+            Order::C => (at / columns, at % columns),
+            Order::Fortran => (at % rows, at / rows),
+        };
+        let checked = |at: usize, value: f64| {
+            convert(value).map_err(|message| {
+                let (row, column) = place(at);
+                FileError::new(path, format!("row {row}, column {column}: {value}; {message}"))
+            })
+        };
+        let values = match (kind.type_char(), width) {
+            (TypeChar::Float, 4) => collect(npy, path, |at, x: f32| checked(at, x.into())),
+            (TypeChar::Float, 8) => collect(npy, path, |at, x: f64| checked(at, x)),
+            (TypeChar::Int, 1) => collect(npy, path, |at, x: i8| checked(at, x.into())),
+            (TypeChar::Int, 2) => collect(npy, path, |at, x: i16| checked(at, x.into())),
+            (TypeChar::Int, 4) => collect(npy, path, |at, x: i32| checked(at, x.into())),
+            (TypeChar::Int, 8) => collect(npy, path, |at, x: i64| checked(at, x as f64)),
+            (TypeChar::Uint, 1) => collect(npy, path, |at, x: u8| checked(at, x.into())),
+            (TypeChar::Uint, 2) => collect(npy, path, |at, x: u16| checked(at, x.into())),
+            (TypeChar::Uint, 4) => collect(npy, path, |at, x: u32| checked(at, x.into())),
+            (TypeChar::Uint, 8) => collect(npy, path, |at, x: u64| checked(at, x as f64)),
+            _ => Err(unusable()),
+        }?;
+        let values = match (order, wanted) {
+            (Order::C, Order::Fortran) => transpose(&values, rows, columns),
+            (Order::Fortran, Order::C) => transpose(&values, columns, rows),
+            _ => values,
+        };
+        Ok(Self { rows, columns, values })
+    }
+}
+
+/// Whether the header is one that NumPy would write, given the start of a file.
+///
+/// `npyz` reads any Python literal: it takes twice as long for each further list in a list, and multiplies the
+/// lengths of any shape. NumPy's own header of a matrix has about a hundred characters, two pairs of brackets, and the
+/// digits of two lengths and of a type.
+fn check_header(start: &[u8]) -> Result<(), &'static str> {
+    const LONGEST: usize = 10_000;
+    const MOST_BRACKETS: usize = 6;
+    const MOST_DIGITS: usize = 18;
+    let (length, text) = match *start {
+        [b'\x93', b'N', b'U', b'M', b'P', b'Y', 1, _, a, b, ref text @ ..] => {
+            (usize::from(u16::from_le_bytes([a, b])), text)
+        }
+        [b'\x93', b'N', b'U', b'M', b'P', b'Y', _, _, a, b, c, d, ref text @ ..] => {
+            (u32::from_le_bytes([a, b, c, d]) as usize, text)
+        }
+        // The reader says what is wrong.
+        _ => return Ok(()),
+    };
+    if length > LONGEST {
+        return Err("has a header of more than 10000 characters, as NumPy never writes");
+    }
+    let text = &text[..length.min(text.len())];
+    let brackets = text.iter().filter(|character| b"([{".contains(character)).count();
+    let digits = text.iter().filter(|character| character.is_ascii_digit()).count();
+    let hexadecimal = text.windows(2).any(|pair| pair.eq_ignore_ascii_case(b"0x"));
+    if brackets > MOST_BRACKETS || digits > MOST_DIGITS || hexadecimal {
+        return Err("has a header that is not that of a matrix: too many brackets or digits");
+    }
+    Ok(())
+}
+
+fn collect<S: Deserialize, T>(
+    npy: NpyFile<BufReader<File>>,
+    path: &Path,
+    convert: impl Fn(usize, S) -> Result<T, FileError>,
+) -> Result<Vec<T>, FileError> {
+    let length = npy.len() as usize;
+    let values = npy.data::<S>().map_err(|error| FileError::new(path, error))?;
+    let mut converted = Vec::with_capacity(length);
+    for (at, value) in values.enumerate() {
+        let value =
+            value.map_err(|error| FileError::new(path, format!("is truncated or damaged: {error}")))?;
+        converted.push(convert(at, value)?);
+    }
+    Ok(converted)
+}
+
+/// From `rows` rows of `columns` values to `columns` rows of `rows`, in squares that fit the cache.
+fn transpose<T: Copy>(values: &[T], rows: usize, columns: usize) -> Vec<T> {
+    const SIDE: usize = 32;
+    let mut transposed = vec![values[0]; values.len()];
+    for top in (0..rows).step_by(SIDE) {
+        for left in (0..columns).step_by(SIDE) {
+            for row in top..(top + SIDE).min(rows) {
+                for column in left..(left + SIDE).min(columns) {
+                    transposed[column * rows + row] = values[row * columns + column];
+                }
+            }
+        }
+    }
+    transposed
+}
+
+#[cfg(test)]
+mod tests;

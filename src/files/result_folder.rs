@@ -1,0 +1,81 @@
+//! Write results into a folder, and remember what was written for its manifest.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+
+use super::error::FileError;
+use super::manifest::{HashedFile, Manifest};
+use super::tables::write_rows;
+use super::whole::write_text;
+
+/// A folder of results that remembers the names of its files, in the order in which they were written.
+#[derive(Debug)]
+pub struct ResultFolder {
+    path: PathBuf,
+    names: Vec<String>,
+}
+
+impl ResultFolder {
+    /// A folder to write to.
+    pub fn new(path: &Path) -> Self {
+        Self { path: path.to_owned(), names: Vec::new() }
+    }
+
+    /// Where it is.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Writes a table; `name` is its path within the folder.
+    ///
+    /// # Errors
+    /// If it cannot be written.
+    pub fn write_rows<T: Serialize>(
+        &mut self,
+        name: &str,
+        rows: impl IntoIterator<Item = T>,
+    ) -> Result<(), FileError> {
+        write_rows(&self.path.join(name), rows)?;
+        self.names.push(name.to_owned());
+        Ok(())
+    }
+
+    /// Writes a text; `name` is its path within the folder.
+    ///
+    /// # Errors
+    /// If it cannot be written.
+    pub fn write_text(&mut self, name: &str, text: &str) -> Result<(), FileError> {
+        write_text(&self.path.join(name), text)?;
+        self.names.push(name.to_owned());
+        Ok(())
+    }
+
+    /// Remembers files that are there already.
+    pub fn remember(&mut self, names: impl IntoIterator<Item = String>) {
+        self.names.extend(names);
+    }
+
+    /// Removes files that an earlier run left, so that they do not stand beside those of this one.
+    ///
+    /// # Errors
+    /// If one is there and cannot be removed.
+    pub fn remove(&self, names: impl IntoIterator<Item = String>) -> Result<(), FileError> {
+        for path in names.into_iter().map(|name| self.path.join(name)).filter(|path| path.exists()) {
+            fs::remove_file(&path)
+                .map_err(|error| FileError::new(&path, format!("cannot be replaced: {error}")))?;
+        }
+        Ok(())
+    }
+
+    /// Writes the manifest, with the hashes of all files that were written or remembered.
+    ///
+    /// # Errors
+    /// If a file cannot be read, or the manifest not written.
+    pub fn write_manifest(&self, manifest: Manifest) -> Result<(), FileError> {
+        let hash = |name: &String| HashedFile::new(name, &self.path.join(name));
+        let outputs = self.names.iter().map(hash).collect::<Result<_, _>>()?;
+        Manifest { outputs, ..manifest }.write(&self.path)
+    }
+}

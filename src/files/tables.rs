@@ -1,0 +1,281 @@
+//! Tables as CSV: labels, trees, joint angles, samples.
+
+use std::path::Path;
+
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use super::error::FileError;
+use super::whole::write_whole;
+use crate::stages::evaluate::{Score, parts};
+use crate::stages::schema::Draw;
+use crate::stages::schema::Keep;
+use crate::stages::simulate::Trajectory;
+use crate::stages::tree::Truth;
+
+/// Writes rows with a header made of their fields' names; a `None` is an empty cell. A row may contain another by
+/// `#[serde(flatten)]`, which the csv crate alone does not write.
+///
+/// # Errors
+/// If the file cannot be written.
+///
+/// # Panics
+/// If a row is no struct of plain values.
+pub fn write_rows<T: Serialize>(path: &Path, rows: impl IntoIterator<Item = T>) -> Result<(), FileError> {
+    write_whole(path, |file| {
+        let mut writer = csv::Writer::from_writer(file);
+        for (at, row) in rows.into_iter().enumerate() {
+            let Ok(Value::Object(row)) = serde_json::to_value(row) else { panic!("a row is a struct") };
+            if at == 0 {
+                writer.write_record(row.keys())?;
+            }
+            writer.write_record(row.values().map(cell))?;
+        }
+        writer.flush()
+    })
+}
+
+fn cell(value: &Value) -> String {
+    match value {
+        Value::Null => String::new(),
+        Value::String(text) => text.clone(),
+        plain => plain.to_string(),
+    }
+}
+
+#[derive(Serialize, Deserialize)]
+struct LabelRow {
+    sensor: usize,
+    part: usize,
+}
+
+#[derive(Serialize, Deserialize)]
+struct TreeRow {
+    child: usize,
+    parent: usize,
+}
+
+/// Writes the truth as a table `sensor,part` and a table `child,parent`.
+pub fn write_truth(labels: &Path, tree: &Path, truth: &Truth) -> Result<(), FileError> {
+    write_rows(labels, truth.labels.iter().enumerate().map(|(sensor, &part)| LabelRow { sensor, part }))?;
+    write_rows(tree, truth.tree.iter().map(|&(child, parent)| TreeRow { child, parent }))
+}
+
+/// Reads the truth: a part for each of `sensors` sensors, and a tree over all the parts.
+pub fn read_truth(labels: &Path, tree: &Path, sensors: usize) -> Result<Truth, FileError> {
+    let mut part_of = vec![None; sensors];
+    for LabelRow { sensor, part } in read_rows(labels)? {
+        match part_of.get_mut(sensor) {
+            Some(slot @ None) => *slot = Some(part),
+            Some(Some(_)) => return Err(FileError::new(labels, format!("sensor {sensor} has two parts"))),
+            None => {
+                let message =
+                    format!("sensor {sensor} is not on the body map, which has sensors 0 to {}", sensors - 1);
+                return Err(FileError::new(labels, message));
+            }
+        }
+    }
+    if let Some(sensor) = part_of.iter().position(Option::is_none) {
+        return Err(FileError::new(labels, format!("sensor {sensor} of {sensors} has no part")));
+    }
+    let truth = Truth {
+        labels: part_of.into_iter().flatten().collect(),
+        tree: read_rows(tree)?.into_iter().map(|TreeRow { child, parent }| (child, parent)).collect(),
+    };
+    check_tree(&truth).map_err(|message| FileError::new(tree, message))?;
+    Ok(truth)
+}
+
+/// Whether the edges connect all parts without a cycle: one fewer than parts, none between parts connected before.
+fn check_tree(truth: &Truth) -> Result<(), String> {
+    let mut parts = truth.labels.clone();
+    parts.sort_unstable();
+    parts.dedup();
+    let index =
+        |part| parts.binary_search(&part).map_err(|_| format!("part {part} has no sensor in the labels"));
+    // Each part points towards the one that stands for all it is connected with.
+    let mut towards: Vec<usize> = (0..parts.len()).collect();
+    let mut cycle = false;
+    for &(child, parent) in &truth.tree {
+        let (child, parent) = (last(&mut towards, index(child)?), last(&mut towards, index(parent)?));
+        cycle |= child == parent;
+        towards[child] = parent;
+    }
+    if cycle || truth.tree.len() + 1 != parts.len() {
+        return Err(format!("{} edges do not make a tree over {} parts", truth.tree.len(), parts.len()));
+    }
+    Ok(())
+}
+
+/// The part that stands for all that `part` is connected with. Ways are halved, so that each is short.
+fn last(towards: &mut [usize], mut part: usize) -> usize {
+    while towards[part] != part {
+        towards[part] = towards[towards[part]];
+        part = towards[part];
+    }
+    part
+}
+
+/// Reads rows by their header.
+///
+/// # Errors
+/// If the file cannot be read, or a line is not such a row.
+pub fn read_rows<T: DeserializeOwned>(path: &Path) -> Result<Vec<T>, FileError> {
+    let mut reader = csv::Reader::from_path(path)
+        .map_err(|error| FileError::new(path, format!("cannot be read: {}", plain(&error))))?;
+    let rows: Result<Vec<T>, _> = reader.deserialize().collect();
+    rows.map_err(|error| {
+        let line = error.position().map_or(String::new(), |position| format!("line {}: ", position.line()));
+        FileError::new(path, format!("{line}{}", plain(&error)))
+    })
+}
+
+/// Reads all cells of a table, its header first.
+///
+/// # Errors
+/// If the file cannot be read, is empty, or has rows of different lengths.
+pub fn read_cells(path: &Path) -> Result<Vec<Vec<String>>, FileError> {
+    let mut reader = csv::ReaderBuilder::new()
+        .has_headers(false)
+        .from_path(path)
+        .map_err(|error| FileError::new(path, format!("cannot be read: {}", plain(&error))))?;
+    let cells = |record: csv::StringRecord| record.iter().map(str::to_owned).collect();
+    let rows: Result<Vec<Vec<String>>, _> = reader.records().map(|record| record.map(cells)).collect();
+    let rows = rows.map_err(|error| FileError::new(path, plain(&error)))?;
+    if rows.is_empty() { Err(FileError::new(path, "is empty")) } else { Ok(rows) }
+}
+
+/// The csv crate's message without the parts that repeat the place.
+fn plain(error: &csv::Error) -> String {
+    match error.kind() {
+        csv::ErrorKind::Io(error) => error.to_string(),
+        csv::ErrorKind::Deserialize { err, .. } => err.kind().to_string(),
+        _ => error.to_string(),
+    }
+}
+
+/// Writes a row a sample: `time_s`, then both angles of each joint in rad, T + 1 rows.
+pub fn write_joint_angles(path: &Path, trajectory: &Trajectory, interval: f64) -> Result<(), FileError> {
+    write_whole(path, |file| {
+        let mut writer = csv::Writer::from_writer(file);
+        let names = (1..=trajectory.joints)
+            .flat_map(|joint| [1, 2].map(|axis| format!("joint{joint}_angle{axis}_rad")));
+        writer.write_record(std::iter::once("time_s".to_owned()).chain(names))?;
+        for (sample, angles) in trajectory.angles.chunks_exact(trajectory.joints).enumerate() {
+            writer.write_field(format!("{:.6}", sample as f64 * interval))?;
+            for angle in angles.as_flattened() {
+                writer.write_field(format!("{angle:.6}"))?;
+            }
+            writer.write_record(None::<&[u8]>)?;
+        }
+        writer.flush()
+    })
+}
+
+#[derive(Serialize)]
+struct DrawRow {
+    chain: usize,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    sweep: Option<usize>,
+    parts: usize,
+    log_posterior: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    ari: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    eligible: Option<bool>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    tree_correct: Option<bool>,
+}
+
+/// Writes `samples.csv`, a row a draw: `chain`, `sweep` where a chain has several draws, `parts`,
+/// `log_posterior`, and `ari`, `eligible` and `tree_correct` if there are scores.
+pub fn write_draws(
+    path: &Path,
+    draws: &[Draw],
+    keep: Keep,
+    scores: Option<&[Score]>,
+) -> Result<(), FileError> {
+    let rows = draws.iter().enumerate().map(|(at, draw)| {
+        let score = scores.map(|scores| &scores[at]);
+        DrawRow {
+            chain: draw.chain,
+            sweep: (keep == Keep::All).then_some(draw.sweep),
+            parts: parts(&draw.labels),
+            log_posterior: draw.log_posterior,
+            ari: score.map(|score| score.ari),
+            eligible: score.map(|score| score.eligible),
+            tree_correct: score.map(|score| score.tree_correct),
+        }
+    });
+    write_rows(path, rows)
+}
+
+/// Writes `trees.csv`, a row an edge: `chain`, `sweep` where a chain has several draws, `child` and `parent`,
+/// labels as in the assignments, and, where the mixture has joints, `x1` … `xd`: the joint on the body map.
+pub fn write_trees(path: &Path, draws: &[Draw], keep: Keep) -> Result<(), FileError> {
+    let dims = draws.iter().flat_map(|draw| &draw.joints).next().map_or(0, Vec::len);
+    let sweep = keep == Keep::All;
+    write_whole(path, |file| {
+        let mut writer = csv::Writer::from_writer(file);
+        let names =
+            ["chain", "sweep", "child", "parent"].into_iter().filter(|name| *name != "sweep" || sweep);
+        writer.write_record(names.map(str::to_owned).chain((1..=dims).map(|k| format!("x{k}"))))?;
+        for draw in draws {
+            for (at, edge) in draw.tree.iter().enumerate() {
+                let numbers =
+                    [Some(draw.chain), sweep.then_some(draw.sweep), Some(edge.child), Some(edge.parent)];
+                let joint = draw.joints.get(at).into_iter().flatten();
+                let numbers = numbers.into_iter().flatten().map(|number| number.to_string());
+                writer.write_record(numbers.chain(joint.map(f64::to_string)))?;
+            }
+        }
+        writer.flush()
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_truth_is_read_back_and_its_mistakes_are_named() {
+        let folder = tempfile::tempdir().unwrap();
+        let (labels, tree) = (folder.path().join("labels.csv"), folder.path().join("tree.csv"));
+        let truth = Truth { labels: vec![3, 3, 1, 7], tree: vec![(1, 3), (7, 1)] };
+        write_truth(&labels, &tree, &truth).unwrap();
+        assert_eq!(read_truth(&labels, &tree, 4).unwrap(), truth);
+
+        // A body of many parts, its edges from the leaves to the root.
+        let many = 20_000;
+        let long = Truth { labels: (0..many).collect(), tree: (1..many).rev().map(|i| (i, i - 1)).collect() };
+        write_truth(&labels, &tree, &long).unwrap();
+        assert_eq!(read_truth(&labels, &tree, many).unwrap(), long);
+
+        let rejects = |label_rows: &str, tree_rows: &str, expected: &str| {
+            std::fs::write(&labels, label_rows).unwrap();
+            std::fs::write(&tree, tree_rows).unwrap();
+            let message = read_truth(&labels, &tree, 3).unwrap_err().to_string();
+            assert!(message.contains(expected) && !message.contains('\n'), "{message:?} lacks {expected:?}");
+        };
+        let (good_labels, good_tree) = ("sensor,part\n0,0\n1,1\n2,2\n", "child,parent\n1,0\n2,1\n");
+        rejects("sensor,part\n0,0\n1,1\n1,1\n", good_tree, "sensor 1 has two parts");
+        rejects("sensor,part\n0,0\n1,1\n", good_tree, "sensor 2 of 3 has no part");
+        rejects("sensor,part\n0,0\n1,1\n3,1\n", good_tree, "sensor 3 is not on the body map");
+        rejects("sensor,part\n0,0\n1,x\n", good_tree, "line 3: ");
+        rejects("sensor;part\n0;0\n", good_tree, "missing field `sensor`");
+        rejects(good_labels, "child,parent\n1,0\n", "1 edges do not make a tree over 3 parts");
+        rejects(good_labels, "child,parent\n1,0\n0,1\n", "do not make a tree");
+        rejects(good_labels, "child,parent\n1,0\n9,0\n", "part 9 has no sensor");
+        rejects(good_labels, "child,parent\n1,0\n0,1\n2,0\n", "3 edges do not make a tree over 3 parts");
+        rejects(good_labels, "child,parent\n1,0\n2,2\n", "do not make a tree");
+        rejects(good_labels, "", "0 edges do not make a tree");
+        rejects("", good_tree, "sensor 0 of 3 has no part");
+        rejects("sensor,part\n0,0\n1,-1\n", good_tree, "line 3: ");
+        rejects("sensor,part\n0,0\n1,99999999999999999999\n", good_tree, "line 3: ");
+        rejects("sensor,part\n0,0\n1\n", good_tree, "line: 3");
+        rejects("sensor,sensor,part\n0,0,0\n", good_tree, "duplicate field `sensor`");
+        rejects("sensor,part\n0,\"a\nb\"\n", good_tree, "line 2: ");
+        rejects("\u{feff}sensor,part\n0,0\n1,1\n2,x\n", good_tree, "line 4: ");
+    }
+}

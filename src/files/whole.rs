@@ -1,0 +1,66 @@
+//! Write files that appear whole or not at all; read text.
+
+use std::fs::{self, File};
+use std::io::{self, BufWriter, Write};
+use std::path::Path;
+
+use super::error::FileError;
+
+/// Writes a file that appears whole or not at all: `write` fills a file beside it, which is synced and
+/// then takes its name. Folders on the way are made.
+///
+/// # Errors
+/// If any of that fails; what was there before is then untouched.
+pub fn write_whole(
+    path: &Path,
+    write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
+) -> Result<(), FileError> {
+    // A link keeps pointing where it does; a device or pipe is not replaced.
+    let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+    if target.exists() && !target.is_file() {
+        return Err(FileError::new(path, "cannot be written: it exists and is no regular file"));
+    }
+    let aside = target.with_added_extension("partial");
+    let attempt = || -> io::Result<()> {
+        if let Some(folder) = target.parent() {
+            fs::create_dir_all(folder)?;
+        }
+        let mut writer = BufWriter::with_capacity(1 << 20, File::create(&aside)?);
+        write(&mut writer)?;
+        writer.into_inner().map_err(io::IntoInnerError::into_error)?.sync_all()?;
+        fs::rename(&aside, &target)
+    };
+    attempt().map_err(|error| {
+        // Nothing is lost if it cannot be removed; the error that counts is the first.
+        let _ = fs::remove_file(&aside);
+        FileError::new(path, format!("cannot be written: {error}"))
+    })
+}
+
+/// Makes sure, before any work is done for it, that a folder is there and can be written to.
+///
+/// # Errors
+/// If it cannot.
+pub fn prepare_folder(path: &Path) -> Result<(), FileError> {
+    let probe = path.join(".bodyschema.partial");
+    fs::create_dir_all(path)
+        .and_then(|()| File::create(&probe))
+        .and_then(|_| fs::remove_file(&probe))
+        .map_err(|error| FileError::new(path, format!("cannot be written to: {error}")))
+}
+
+/// [`write_whole`] for text.
+///
+/// # Errors
+/// As for [`write_whole`].
+pub fn write_text(path: &Path, text: &str) -> Result<(), FileError> {
+    write_whole(path, |file| file.write_all(text.as_bytes()))
+}
+
+/// The text of a file.
+///
+/// # Errors
+/// If it cannot be read, or is no text.
+pub fn read_text(path: &Path) -> Result<String, FileError> {
+    fs::read_to_string(path).map_err(|error| FileError::new(path, format!("cannot be read: {error}")))
+}

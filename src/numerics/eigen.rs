@@ -1,0 +1,240 @@
+//! Symmetric matrix → its largest eigenvalues and their eigenvectors.
+//!
+//! A few of many eigenvalues come from block Lanczos with thick restarts (Wu & Simon, SIAM Journal on Matrix
+//! Analysis and Applications 22, 2000), all sums of which are in a fixed order. faer's own partial
+//! decomposition is of no use here: it takes eigenvalues of largest magnitude, the negative ones too, and its
+//! blocks are single vectors, which do not see that an eigenvalue is multiple.
+
+use faer::linalg::matmul::matmul;
+use faer::{Accum, Mat, MatMut, MatRef, Par, Side};
+use rand::RngExt;
+use rayon::prelude::*;
+
+use crate::numerics::rng::stream;
+
+/// Vectors of a block beyond the wanted ones: how fast the last wanted eigenvector converges depends on how far
+/// its eigenvalue is from the first that a block has no room for.
+const SPARE: usize = 5;
+
+/// Blocks of the basis from which eigenvectors are combined, and those of them that survive a restart.
+const BLOCKS: usize = 6;
+const KEPT_BLOCKS: usize = 2;
+
+/// Restarts after which the whole matrix is decomposed instead; fewer than ten are usual.
+const MOST_RESTARTS: usize = 300;
+
+/// Restarts for which the images of the basis are combined before they are found anew: a product with the matrix
+/// is what takes the time.
+const TRUSTED_RESTARTS: usize = 8;
+
+/// Length of B v − λ v at which an eigenvector counts as found, in units of ε √n |λ|max. The rounding of a
+/// product leaves about four.
+const RESIDUAL: f64 = 20.0;
+
+/// Rows of a product that one thread sums, in an order that does not depend on the number of threads.
+const ROWS: usize = 64;
+
+/// Eigenvalues and eigenvectors of a symmetric matrix.
+#[derive(Debug, Clone)]
+pub struct Eigen {
+    /// Descending.
+    pub values: Vec<f64>,
+    /// n × number of values, of unit length.
+    pub vectors: Mat<f64>,
+}
+
+/// A decomposition that did not converge.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NoConvergence;
+
+/// The `wanted` largest eigenvalues, or all if there are fewer; a multiple one counts as often as it is there.
+///
+/// # Errors
+/// If the decomposition does not converge.
+pub fn largest(matrix: MatRef<'_, f64>, wanted: usize) -> Result<Eigen, NoConvergence> {
+    // faer's results depend on its number of threads.
+    faer::set_global_parallelism(Par::Seq);
+    let wanted = wanted.min(matrix.nrows());
+    let block = wanted + SPARE;
+    let few = 2 * BLOCKS * block <= matrix.nrows();
+    match few.then(|| lanczos(matrix, wanted, block)).flatten() {
+        Some(eigen) => Ok(eigen),
+        None => whole(matrix, wanted),
+    }
+}
+
+/// The largest eigenvalues by a decomposition of the whole matrix.
+fn whole(matrix: MatRef<'_, f64>, wanted: usize) -> Result<Eigen, NoConvergence> {
+    let decomposition = matrix.self_adjoint_eigen(Side::Lower).map_err(|_| NoConvergence)?;
+    let (ascending, vectors) = (decomposition.S().column_vector(), decomposition.U());
+    let n = matrix.nrows();
+    let values = (0..wanted).map(|k| ascending[n - 1 - k]).collect();
+    Ok(Eigen { values, vectors: vectors.reverse_cols().subcols(0, wanted).to_owned() })
+}
+
+/// The largest eigenvalues by block Lanczos; none if they do not converge.
+///
+/// The basis grows by the image of its last block until it is full, and restarts from the best combinations
+/// of all its vectors. All is orthogonalised and projected in full: that costs little beside the products,
+/// and where the images span nothing new, as for a matrix of low rank, rounding puts other vectors in place.
+fn lanczos(matrix: MatRef<'_, f64>, wanted: usize, block: usize) -> Option<Eigen> {
+    let (n, most, kept) = (matrix.nrows(), BLOCKS * block, KEPT_BLOCKS * block);
+    let mut basis = Mat::<f64>::zeros(n, most);
+    let mut images = Mat::<f64>::zeros(n, most);
+    let mut rng = stream(0, 0, "eigenvectors", 0);
+    let mut next = Mat::from_fn(n, block, |_, _| rng.random_range(-1.0..1.0));
+    let mut held = 0;
+    for restart in 1..=MOST_RESTARTS {
+        while held < most {
+            let vectors = orthonormal(next, basis.subcols(0, held));
+            next = product(matrix, vectors.as_ref());
+            basis.subcols_mut(held, block).copy_from(&vectors);
+            images.subcols_mut(held, block).copy_from(&next);
+            held += block;
+        }
+        let ritz = product(basis.transpose(), images.as_ref()).self_adjoint_eigen(Side::Lower).ok()?;
+        let values: Vec<f64> = ritz.S().column_vector().iter().rev().copied().collect();
+        let magnitude = values[0].abs().max(values[most - 1].abs());
+        let small = RESIDUAL * f64::EPSILON * (n as f64).sqrt() * magnitude;
+        let found = |vectors: &Mat<f64>, applied: &Mat<f64>| {
+            let residual = |k: usize| (applied.col(k) - faer::Scale(values[k]) * vectors.col(k)).norm_l2();
+            (0..wanted).all(|k| residual(k) <= small)
+        };
+        let combined = ritz.U().reverse_cols().subcols(0, kept);
+        let vectors = product(basis.as_ref(), combined);
+        let mut applied = product(images.as_ref(), combined);
+        if found(&vectors, &applied) || restart.is_multiple_of(TRUSTED_RESTARTS) {
+            // Combined from images that are held, they gather rounding with each restart.
+            applied = product(matrix, vectors.as_ref());
+            if found(&vectors, &applied) {
+                let vectors = vectors.subcols(0, wanted).to_owned();
+                return Some(Eigen { values: values[..wanted].to_vec(), vectors });
+            }
+        }
+        next = orthonormal(next, basis.as_ref());
+        basis.subcols_mut(0, kept).copy_from(&vectors);
+        images.subcols_mut(0, kept).copy_from(&applied);
+        held = kept;
+    }
+    None
+}
+
+/// An orthonormal basis of what `vectors` span beside the orthonormal `basis`, to which it is orthogonal.
+///
+/// Where little or nothing is left beside it, what is left is rounding, which points along the basis too: a pass
+/// counts only if it found unit vectors that were nearly orthogonal before it.
+fn orthonormal(mut vectors: Mat<f64>, basis: MatRef<'_, f64>) -> Mat<f64> {
+    const MOST_PASSES: usize = 6;
+    for pass in 0..MOST_PASSES {
+        let along = product(basis.transpose(), vectors.as_ref());
+        let along_length = along.norm_l2();
+        vectors -= product(basis, along.as_ref());
+        // Taking this off unit vectors changes their lengths and angles by its square, which is nothing.
+        if pass > 0 && along_length.powi(2) < f64::EPSILON {
+            break;
+        }
+        vectors = vectors.qr().compute_thin_Q();
+        if pass > 0 && along_length < 0.1 {
+            break;
+        }
+    }
+    vectors
+}
+
+/// A matrix times another, by all threads.
+fn product(left: MatRef<'_, f64>, right: MatRef<'_, f64>) -> Mat<f64> {
+    let mut product = Mat::zeros(left.nrows(), right.ncols());
+    let mut parts: Vec<(usize, MatMut<'_, f64>)> = Vec::new();
+    let mut rest = product.as_mut();
+    for row in (0..left.nrows()).step_by(ROWS) {
+        let (part, below) = rest.split_at_row_mut(ROWS.min(left.nrows() - row));
+        parts.push((row, part));
+        rest = below;
+    }
+    parts.into_par_iter().for_each(|(row, part)| {
+        let rows = left.subrows(row, part.nrows());
+        matmul(part, Accum::Replace, rows, right, 1.0, Par::Seq);
+    });
+    product
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A symmetric matrix with these eigenvalues and random eigenvectors.
+    fn with_spectrum(values: &[f64]) -> Mat<f64> {
+        let n = values.len();
+        let mut rng = stream(1, 1, "spectrum", 0);
+        let vectors = Mat::from_fn(n, n, |_, _| rng.random_range(-1.0..1.0)).qr().compute_thin_Q();
+        let scaled = Mat::from_fn(n, n, |i, j| vectors[(i, j)] * values[j]);
+        let matrix = scaled * vectors.transpose();
+        Mat::from_fn(n, n, |i, j| matrix[(i.max(j), i.min(j))])
+    }
+
+    fn few(matrix: &Mat<f64>, wanted: usize) -> Eigen {
+        lanczos(matrix.as_ref(), wanted, wanted + SPARE).expect("it converges")
+    }
+
+    /// Checks eigenvalues and what eigenvectors must be, multiple eigenvalues or not.
+    fn check(matrix: &Mat<f64>, wanted: usize) {
+        let (found, oracle) = (few(matrix, wanted), whole(matrix.as_ref(), wanted).unwrap());
+        let scale = matrix.norm_l2().max(1e-300);
+        let off =
+            (found.vectors.transpose() * &found.vectors - Mat::<f64>::identity(wanted, wanted)).norm_max();
+        assert!(off < 1e-13, "not orthonormal by {off}");
+        for k in 0..wanted {
+            assert!((found.values[k] - oracle.values[k]).abs() < 1e-12 * scale, "eigenvalue {k}");
+            let image = matrix * found.vectors.col(k);
+            let residual = (image - faer::Scale(found.values[k]) * found.vectors.col(k)).norm_l2();
+            assert!(residual < 1e-11 * scale, "eigenvector {k} is off by {residual}");
+        }
+    }
+
+    #[test]
+    fn agrees_with_the_whole_decomposition_where_eigenvalues_are_close() {
+        // Pairs that differ by a thousandth, above a slow decay; and others as far below 0.
+        let pair = |k: usize| (20 - k / 2) as f64 * [1.0, 0.999][k % 2];
+        let values: Vec<f64> = (0..300)
+            .map(|k| match k {
+                0..20 => pair(k),
+                20..200 => 10.0 * 0.97_f64.powi(k as i32 - 20),
+                _ => -25.0 / (k - 199) as f64,
+            })
+            .collect();
+        let matrix = with_spectrum(&values);
+        check(&matrix, 15);
+        let (found, oracle) = (few(&matrix, 15), whole(matrix.as_ref(), 15).unwrap());
+        for (k, value) in values.iter().enumerate().take(15) {
+            let along = found.vectors.col(k).transpose() * oracle.vectors.col(k);
+            let off = (found.vectors.col(k) - faer::Scale(along.signum()) * oracle.vectors.col(k)).norm_max();
+            assert!(off < 1e-9, "eigenvector {k} is off by {off}");
+            assert!((found.values[k] - value).abs() < 1e-11);
+        }
+    }
+
+    #[test]
+    fn multiple_eigenvalues_and_low_ranks_are_whole() {
+        let n = 250;
+        let spectrum = |value: fn(usize) -> f64| with_spectrum(&(0..n).map(value).collect::<Vec<f64>>());
+        // More copies than a block has vectors, copies below others, and fewer values than are wanted.
+        check(&spectrum(|k| if k < 60 { 2.0 } else { -1.0 }), 15);
+        check(&spectrum(|k| [3.0, 3.0, 3.0, 2.0, 2.0, 1.0, 1.0, 1.0].get(k).copied().unwrap_or(0.0)), 7);
+        check(&spectrum(|k| if k < 3 { 3.0 - k as f64 } else { 0.0 }), 15);
+        check(&spectrum(|k| if k == 0 { -1.0 } else { 0.0 }), 5);
+        check(&Mat::identity(n, n), 15);
+        check(&Mat::zeros(n, n), 15);
+        check(&Mat::from_fn(n, n, |_, _| 1.0), 2);
+    }
+
+    #[test]
+    fn the_number_of_threads_changes_no_bit() {
+        let matrix = with_spectrum(&(0..300).map(|k| 1.0 / (1.0 + k as f64)).collect::<Vec<f64>>());
+        let with = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| few(&matrix, 10))
+        };
+        let (one, three) = (with(1), with(3));
+        assert_eq!((one.values, one.vectors), (three.values, three.vectors));
+    }
+}

@@ -1,0 +1,9 @@
+//! What every stage computes with: random numbers, vector instructions, eigenvalues, and ranges of settings.
+
+pub(crate) mod eigen;
+pub mod partition;
+pub mod range;
+pub mod rng;
+pub(crate) mod simd;
+#[cfg(test)]
+pub(crate) mod testing;

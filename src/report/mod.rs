@@ -1,0 +1,8 @@
+//! Show what an experiment found: tables and pictures of the paper's figures, the table of claims, and a page.
+
+pub mod claims_table;
+pub mod figure_rows;
+pub mod figures;
+pub mod markdown;
+pub mod page;
+pub mod plot;

@@ -1,0 +1,260 @@
+//! The folder of a finished experiment → `report.html`, one file that needs nothing else to be read.
+//!
+//! It is made from the folder alone (claims.csv, manifest.json, figures/), so that it can be made again.
+
+use std::path::Path;
+
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+use serde_json::Value;
+
+use crate::analysis::published::{Figure, figures};
+use crate::files::manifest::{HashedFile, Manifest};
+use crate::files::provenance::Provenance;
+use crate::files::{FileError, read_text, tables, write_text};
+use crate::report::claims_table::{EXTENSION, Row};
+use crate::settings::PAPER;
+
+/// Writes `report.html` into the folder of an experiment.
+///
+/// # Errors
+/// If a file of the experiment is missing or malformed, or the report cannot be written.
+pub fn write(folder: &Path) -> Result<(), FileError> {
+    let rows: Vec<Row> = tables::read_rows(&folder.join("claims.csv"))?;
+    let manifest = Manifest::read(folder)?;
+    let mut shown = Vec::new();
+    for figure in figures() {
+        let path = folder.join("figures").join(&figure.name).with_added_extension("svg");
+        if path.exists() {
+            shown.push((figure, read_text(&path)?));
+        }
+    }
+    write_text(&folder.join("report.html"), &page(&rows, &shown, &manifest).into_string())
+}
+
+fn page(rows: &[Row], figures: &[(Figure, String)], manifest: &Manifest) -> Markup {
+    let experiment = match manifest.experiment.as_deref() {
+        Some("exp1") => "Experiment 1: body schema estimation",
+        Some("exp2") => "Experiment 2: ratio of motor coordination",
+        _ => "Experiment",
+    };
+    html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                title { "bodyschema: " (experiment) }
+                style { (PreEscaped(include_str!("style.css"))) }
+            }
+            body {
+                header {
+                    h1 { (experiment) }
+                    p { "A replication of Mimura, Hagiwara, Taniguchi and Inamura, " em {
+                        "Bayesian Body Schema Estimation using Tactile Information obtained through Coordinated \
+                         Random Movements"
+                    } " (Advanced Robotics, 2017)." }
+                    p { (manifest.summary.as_deref().unwrap_or_default()) }
+                    p.headline { (manifest.headline.join(", ")) }
+                    nav {
+                        @for (to, name) in
+                            [("claims", "Claims"), ("figures", "Figures"), ("settings", "Settings"), ("manifest", "Manifest")]
+                        {
+                            a href={ "#" (to) } { (name) } " "
+                        }
+                    }
+                }
+                main {
+                    (claims_section(rows))
+                    section id="figures" {
+                        h2 { "Figures" }
+                        @for (figure, svg) in figures { (figure_section(figure, svg, rows)) }
+                    }
+                    (settings_section(manifest.settings.as_ref().unwrap_or(&Value::Null)))
+                    (manifest_section(manifest))
+                }
+            }
+        }
+    }
+}
+
+fn claims_section(rows: &[Row]) -> Markup {
+    let count = |verdict: &str| rows.iter().filter(|row| row.verdict == verdict).count();
+    html! {
+        section id="claims" {
+            h2 { "Claims" }
+            p {
+                (count("reproduced")) " reproduced, " (count("not reproduced")) " not reproduced, "
+                (count("not testable")) " not testable. The accepted range of each was fixed before the first run \
+                 of its kind. Rows marked extension count only the draw of highest log posterior of each simulation, \
+                 which the paper does not."
+            }
+            table.claims {
+                thead { tr { @for name in Row::HEADER { th scope="col" { (name) } } } }
+                tbody {
+                    @for row in rows {
+                        tr class=(class(&row.verdict)) {
+                            @for (name, cell) in Row::HEADER.iter().zip(row.cells()) {
+                                td data-label=(name) { @if *name == "verdict" { (mark(&row.verdict)) " " } (cell) }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn figure_section(figure: &Figure, svg: &str, rows: &[Row]) -> Markup {
+    let of_figure = |row: &&Row| row.figure == figure.number && row.verdict != EXTENSION;
+    html! {
+        figure id=(figure.name) {
+            h3 { "Figure " (figure.number) ". " (figure.title) }
+            figcaption {
+                p { b { "The paper" } " (" (figure.place) "): " (figure.says) }
+                @for row in rows.iter().filter(of_figure) {
+                    p class=(class(&row.verdict)) {
+                        (mark(&row.verdict)) " " b { (row.verdict) } ": " (row.statement)
+                        @if row.reproduced.is_some() { " — published " (row.published) ", reproduced " (row.cells()[3]) }
+                        " (" (row.found) ")"
+                    }
+                }
+            }
+            (PreEscaped(svg_element(svg)))
+            p.data { "Data: " a href={ "figures/" (figure.name) ".csv" } { "figures/" (figure.name) ".csv" } }
+        }
+    }
+}
+
+/// The element without the declaration that a file of its own begins with.
+fn svg_element(svg: &str) -> &str {
+    svg.find("<svg").map_or(svg, |start| &svg[start..])
+}
+
+fn settings_section(settings: &Value) -> Markup {
+    html! {
+        section id="settings" {
+            h2 { "Settings" }
+            p { "Stated: the paper gives the value (in the section named). Ours: it does not, and this is our choice. \
+                 A value that this run changed is marked." }
+            table.settings {
+                thead { tr { th scope="col" { "setting" } th scope="col" { "value" } th scope="col" { "source" }
+                    th scope="col" { "meaning" } } }
+                tbody {
+                    @for Setting { key, default, source, meaning } in stated_settings() {
+                        @let (section, name) = key.split_once('.').unwrap_or(("", &key));
+                        @let value = text(&settings[section][name]);
+                        tr {
+                            td data-label="setting" { code { (key) } }
+                            td data-label="value" {
+                                (value)
+                                @if value != default { " " b { "changed from " (default) } }
+                            }
+                            td data-label="source" { (source) }
+                            td data-label="meaning" { (meaning) }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// A line of `reproduce/paper.toml`.
+struct Setting {
+    key: String,
+    default: String,
+    source: String,
+    meaning: String,
+}
+
+/// All settings with what the comments of `reproduce/paper.toml` say of them: `key = value # source: meaning`.
+fn stated_settings() -> Vec<Setting> {
+    let mut section = "";
+    let mut settings = Vec::new();
+    for line in PAPER.lines() {
+        if let Some(name) = line.strip_prefix('[').and_then(|rest| rest.strip_suffix(']')) {
+            section = name;
+        }
+        let Some((assignment, comment)) = line.split_once('#') else { continue };
+        let Some((name, value)) = assignment.split_once('=') else { continue };
+        let (source, meaning) = comment.split_once(": ").unwrap_or((comment, ""));
+        // The same text for a value as JSON has, in which the manifest keeps it.
+        let table: toml::Table =
+            format!("value = {value}").parse().expect("a line of TOML; a test checks it");
+        let default = serde_json::to_value(&table["value"]).expect("a setting's value is plain");
+        settings.push(Setting {
+            key: format!("{section}.{}", name.trim()),
+            default: text(&default),
+            source: source.trim().to_owned(),
+            meaning: meaning.trim().to_owned(),
+        });
+    }
+    settings
+}
+
+fn manifest_section(manifest: &Manifest) -> Markup {
+    let Provenance { program, revision, streams, ode, rustc, libc, cpu } = &manifest.provenance;
+    let seed = manifest.seed.to_string();
+    let facts = [
+        ("program", program.as_str()),
+        ("revision", revision),
+        ("seed", &seed),
+        ("streams", streams),
+        ("rustc", rustc),
+        ("libc", libc.as_deref().unwrap_or_default()),
+        ("cpu", cpu.as_deref().unwrap_or_default()),
+    ];
+    html! {
+        section id="manifest" {
+            h2 { "Manifest" }
+            dl {
+                @for (name, value) in facts {
+                    dt { (name) } dd { (value) }
+                }
+                dt { "ODE" } dd { (ode.version) " (" (ode.configuration) ")" }
+            }
+            p { "When and how the run was made, on how many threads and with how much memory, is in run.json beside \
+                 this report." }
+            h3 { "Files" }
+            table.files {
+                thead { tr { th scope="col" { "file" } th scope="col" { "SHA-256" } } }
+                tbody {
+                    @for HashedFile { file, sha256 } in &manifest.outputs {
+                        tr {
+                            td data-label="file" { (file) }
+                            td data-label="SHA-256" { code { (sha256) } }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// A value for a reader: strings without quotes, lists by commas, nothing for nothing.
+fn text(value: &Value) -> String {
+    match value {
+        Value::Null => String::new(),
+        Value::String(text) => text.clone(),
+        Value::Array(items) => items.iter().map(text).collect::<Vec<_>>().join(", "),
+        Value::Number(number) => number.as_f64().map_or(number.to_string(), |value| {
+            // 1.0 and 1 are the same setting.
+            if number.is_f64() { format!("{value}") } else { number.to_string() }
+        }),
+        other => other.to_string(),
+    }
+}
+
+fn class(verdict: &str) -> String {
+    verdict.replace(' ', "-")
+}
+
+/// A sign beside the word, so that colour is not alone in telling verdicts apart.
+fn mark(verdict: &str) -> &'static str {
+    match verdict {
+        "reproduced" => "✓",
+        "not reproduced" => "✗",
+        EXTENSION => "+",
+        _ => "–",
+    }
+}

@@ -1,0 +1,98 @@
+//! Joint angles over time → figure 5: a panel for each p.
+
+use std::f64::consts::PI;
+
+use super::super::figure_rows::AngleRow;
+use super::axes::{Axis, Panel, Rect, X_BARE, X_LABELS, around, plain};
+use super::canvas::{
+    Canvas, INK, MarkerStyle, PALETTE, Place, PlotError, Rendered, SHAPES, WIDTH, paint, stroke,
+};
+use super::legend::{Key, Legend};
+use super::values::{check, few};
+
+/// Markers on a line.
+const MARKERS: f64 = 7.0;
+
+/// Figure 5.
+pub fn render(rows: &[AngleRow]) -> Result<String, PlotError> {
+    check("p", rows.iter().map(|row| row.coordination), 0.0, 1.0)?;
+    check("time", rows.iter().map(|row| row.time_s), 0.0, 1e9)?;
+    // A little room: the table is rounded.
+    check("angle", rows.iter().flat_map(|row| [row.angle1_rad, row.angle2_rad]), -3.15, 3.15)?;
+    let coordinations = few("p", rows.iter().map(|row| row.coordination))?;
+    let joints = few("joint", rows.iter().map(|row| row.joint))?;
+
+    let mut legend = Legend::default();
+    for (at, joint) in joints.iter().enumerate() {
+        legend.add(Key::Marker(look(at), 3.6), format!("joint {joint}"));
+    }
+    legend.add(Key::Break, "");
+    legend.add(Key::Line(INK, 1.6), "first angle");
+    legend.add(Key::Line(INK, 0.6), "second angle (thin)");
+    let (above, each) = (19.0, 96.0);
+    let top = legend.height();
+    let height = top + coordinations.len() as f64 * (above + each) + X_LABELS - X_BARE + 4.0;
+    let times = around(rows.iter().map(|row| row.time_s), 0.01);
+    paint(height, |canvas| {
+        legend.render(canvas)?;
+        for (at, p) in coordinations.iter().enumerate() {
+            let last = at + 1 == coordinations.len();
+            let outer = Rect {
+                left: 4.0,
+                top: top + at as f64 * (above + each) + above,
+                width: WIDTH - 20.0,
+                height: each + if last { X_LABELS - X_BARE } else { 0.0 },
+            };
+            let x = Axis::new(if last { "time / s" } else { "" }, times.clone(), 6);
+            let y = Axis {
+                ticks: vec![-PI, 0.0, PI],
+                label: |angle| if angle == 0.0 { "0".into() } else { format!("{}\u{3c0}", sign(angle)) },
+                ..Axis::new("angle / rad", -1.1 * PI..1.1 * PI, 3)
+            };
+            let panel = Panel::render(canvas, outer, 46.0, &x, &y)?;
+            panel.title(canvas, &format!("p = {}", plain(*p)))?;
+            for (number, joint) in joints.iter().enumerate() {
+                let mine: Vec<&AngleRow> =
+                    rows.iter().filter(|row| row.coordination == *p && row.joint == *joint).collect();
+                one(canvas, &panel, &mine, number, joints.len())?;
+            }
+        }
+        Ok(())
+    })
+}
+
+fn look(joint: usize) -> MarkerStyle {
+    MarkerStyle {
+        colour: PALETTE[[0, 3, 6, 2, 1, 4, 5][joint % 7]],
+        shape: SHAPES[joint % SHAPES.len()],
+        hollow: false,
+    }
+}
+
+fn sign(angle: f64) -> &'static str {
+    if angle < 0.0 { "\u{2212}" } else { "" }
+}
+
+/// Both angles of one joint.
+fn one(canvas: &Canvas, panel: &Panel, rows: &[&AngleRow], joint: usize, joints: usize) -> Rendered {
+    let look = look(joint);
+    type Angle = fn(&AngleRow) -> f64;
+    let angles: [(Angle, f64); 2] = [(|row| row.angle2_rad, 0.5), (|row| row.angle1_rad, 1.2)];
+    for (angle, width) in angles {
+        // An angle that passes π comes back at −π: the shorter way between two samples is then off the panel.
+        let runs = rows.chunk_by(|a, b| (angle(a) - angle(b)).abs() <= PI);
+        for run in runs.filter(|run| run.len() > 1) {
+            let line: Vec<Place> = run.iter().map(|row| panel.at(row.time_s, angle(row))).collect();
+            canvas.line(&line, stroke(look.colour, width))?;
+        }
+    }
+    // Beside those of the other joints.
+    let step = rows.len() as f64 / MARKERS;
+    let first = step * (joint as f64 + 0.5) / joints as f64;
+    for at in 0..MARKERS as usize {
+        if let Some(row) = rows.get((first + at as f64 * step) as usize) {
+            canvas.marker(panel.at(row.time_s, row.angle1_rad), 3.0, look)?;
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,329 @@
+//! Points of curves → figures 8, 10 and 11: a mean or rate against d or p, with what it rests on.
+
+use std::collections::BTreeSet;
+
+use plotters::style::Color;
+
+use super::super::figure_rows::{Counting, CurveRow};
+use super::axes::{Axis, Panel, Rect, X_BARE, X_LABELS, percent, plain, sparse};
+use super::canvas::plot_error;
+use super::canvas::{
+    Anchor, Canvas, GREY, INK, MarkerStyle, PlotError, Rendered, SMALL, Shape, WIDTH, paint, stroke,
+    text_width,
+};
+use super::legend::{FAINT, Key, Legend};
+use super::values::{check, distinct, few};
+use crate::analysis::published::Mark;
+
+/// What a figure shows.
+pub struct Kind {
+    /// Whether against p rather than d.
+    by_coordination: bool,
+    /// Whether rates of trees rather than means of the ARI.
+    rates: bool,
+}
+
+/// Figures 8a and 8b.
+pub const ARI_BY_DIMENSION: Kind = Kind { by_coordination: false, rates: false };
+/// Figures 10a and 10b.
+pub const TREE_BY_DIMENSION: Kind = Kind { by_coordination: false, rates: true };
+/// Figure 11a.
+pub const ARI_BY_COORDINATION: Kind = Kind { by_coordination: true, rates: false };
+/// Figure 11b.
+pub const TREE_BY_COORDINATION: Kind = Kind { by_coordination: true, rates: true };
+
+const Y_LABELS: f64 = 50.0;
+/// The same where they are percentages.
+const Y_PERCENT: f64 = 66.0;
+const N_LINE: f64 = 16.0;
+const RADIUS: f64 = 3.8;
+
+impl Kind {
+    fn x(&self, row: &CurveRow) -> f64 {
+        if self.by_coordination { row.coordination } else { row.dimension as f64 }
+    }
+
+    fn check(&self, rows: &[CurveRow]) -> Rendered {
+        check("p", rows.iter().map(|row| row.coordination), 0.0, 1.0)?;
+        check("d", rows.iter().map(|row| row.dimension as f64), 1.0, 1e6)?;
+        let values = rows.iter().flat_map(|row| [row.value, row.cells.lowest, row.cells.highest]).flatten();
+        check("value", values, if self.rates { 0.0 } else { -1.0 }, 1.0)?;
+        // An interval of few samples may reach beyond what is possible.
+        check(
+            "interval end",
+            rows.iter().flat_map(|row| [row.cells.low, row.cells.high]).flatten(),
+            -1e9,
+            1e9,
+        )?;
+        few(if self.by_coordination { "p" } else { "d" }, rows.iter().map(|row| self.x(row)))?;
+        few("method", rows.iter().map(|row| row.method.as_str()))?;
+        few("clusters", rows.iter().map(|row| row.clusters))?;
+        let mut seen = BTreeSet::new();
+        // −0 is 0.
+        match rows.iter().find(|row| !seen.insert((key(row), (self.x(row) + 0.0).to_bits()))) {
+            Some(row) => plot_error(format!("has two rows of {} at {}", row.method, plain(self.x(row)))),
+            None => Ok(()),
+        }
+    }
+
+    fn axes(&self, rows: &[CurveRow]) -> (Axis<'static>, Axis<'static>) {
+        let xs = distinct(rows.iter().map(|row| self.x(row)));
+        let (first, last) = (xs[0], xs[xs.len() - 1]);
+        let room = if self.by_coordination { 0.03 } else { 0.7 };
+        // About the width of a label.
+        let between = 24.0 * (last - first + 2.0 * room) / (WIDTH - Y_LABELS);
+        let x = Axis {
+            ticks: sparse(&xs, between),
+            ..Axis::new(
+                if self.by_coordination {
+                    "p, probability that a joint stays locked"
+                } else {
+                    "d, dimensions of the body map"
+                },
+                first - room..last + room,
+                5,
+            )
+        };
+        let lowest = rows.iter().flat_map(|row| [row.value, row.cells.lowest]).flatten().fold(0.0, f64::min);
+        let y = if self.rates {
+            Axis { label: percent, ..Axis::new("right trees", -0.04..1.04, 5) }
+        } else {
+            Axis::new("mean adjusted Rand index", (lowest - 0.03).max(-1.02)..1.02, 5)
+        };
+        (x, y)
+    }
+}
+
+/// What tells one series from another.
+fn key(row: &CurveRow) -> (&str, Option<usize>, bool) {
+    (&row.method, row.clusters, row.counting == Counting::BestDraw)
+}
+
+/// Rows of each series, in the order of the table.
+fn series(rows: &[CurveRow]) -> Vec<Vec<&CurveRow>> {
+    let mut all: Vec<Vec<&CurveRow>> = Vec::new();
+    for row in rows {
+        match all.iter_mut().find(|series| key(series[0]) == key(row)) {
+            Some(series) => series.push(row),
+            None => all.push(vec![row]),
+        }
+    }
+    all
+}
+
+fn name(method: &str) -> &str {
+    match method {
+        "ward" => "Ward\u{2019}s method",
+        "gmm" => "GMM",
+        "dpgmm" => "DPGMM",
+        "dpgmm-lj" => "DPGMM-LJ",
+        other => other,
+    }
+}
+
+/// A method looks the same in every figure; what an extension counts is hollow.
+fn look(row: &CurveRow, methods: &[&str]) -> MarkerStyle {
+    let at = match row.method.as_str() {
+        "dpgmm-lj" => 0,
+        "dpgmm" => 3,
+        other => 1 + methods.iter().position(|method| *method == other).unwrap_or(0),
+    };
+    let shape = if at == 3 { Shape::Square } else { MarkerStyle::of(at).shape };
+    MarkerStyle { shape, hollow: row.counting == Counting::BestDraw, ..MarkerStyle::of(at) }
+}
+
+/// A figure with one panel and a series for each method and way of counting.
+pub fn render(rows: &[CurveRow], kind: &Kind, mark: Option<&Mark>) -> Result<String, PlotError> {
+    kind.check(rows)?;
+    let methods = few("method", rows.iter().map(|row| row.method.as_str()))?;
+    let all = series(rows);
+    let looks: Vec<MarkerStyle> = all.iter().map(|series| look(series[0], &methods)).collect();
+
+    let mut legend = Legend::default();
+    let extensions = looks.iter().filter(|look| look.hollow).count();
+    for (series, &look) in all.iter().zip(&looks).filter(|(_, look)| !look.hollow) {
+        let tree = if kind.rates && series[0].method == "dpgmm" { " + Prim" } else { "" };
+        legend.add(Key::Curve(look), format!("{}{tree}", name(&series[0].method)));
+    }
+    legend.add(Key::Whisker, "95 % interval");
+    if let Some(&look) = looks.iter().find(|look| look.hollow) {
+        let which = if extensions > 1 { "hollow: " } else { "" };
+        legend.add(Key::Marker(look, RADIUS), format!("{which}draw of highest log posterior (extension)"));
+    }
+    if rows.iter().any(|row| row.cells.lowest.is_some()) {
+        legend.add(Key::Band(INK, FAINT), "lowest to highest simulation");
+    }
+    if rows.iter().any(|row| row.value.is_none()) {
+        let what = if kind.rates { "no eligible draw" } else { "no draw" };
+        legend.add(Key::Marker(missing(), RADIUS), what);
+    }
+    if let Some(mark) = mark {
+        legend.add(Key::Dashes, mark.name.clone());
+    }
+
+    let top = legend.height() + N_LINE * all.len() as f64 + 4.0;
+    let height = top + 250.0 + X_LABELS;
+    paint(height, |canvas| {
+        legend.render(canvas)?;
+        let (x, y) = kind.axes(rows);
+        let outer = Rect { left: 4.0, top, width: WIDTH - 10.0, height: height - top - 2.0 };
+        let panel = Panel::render(canvas, outer, if kind.rates { Y_PERCENT } else { Y_LABELS }, &x, &y)?;
+        if let Some(mark) = mark {
+            panel.reference(canvas, mark.value)?;
+        }
+        // Where there is no room for a label.
+        for x in distinct(rows.iter().map(|row| kind.x(row))) {
+            let (x, bottom) = panel.at(x, y.range.start);
+            canvas.line(&[(x, bottom), (x, bottom + 2.5)], stroke(GREY, 0.8))?;
+        }
+        curves(canvas, &panel, &all, &looks, kind)?;
+        for (at, (series, &look)) in all.iter().zip(&looks).enumerate() {
+            let y = top - N_LINE * (all.len() - at) as f64 + N_LINE / 2.0 - 2.0;
+            numbers(canvas, &panel, y, series, look, kind)?;
+        }
+        Ok(())
+    })
+}
+
+/// Figure 8a: a panel for each method, a series for each number of clusters.
+pub fn baselines(rows: &[CurveRow], mark: Option<&Mark>) -> Result<String, PlotError> {
+    let kind = ARI_BY_DIMENSION;
+    kind.check(rows)?;
+    let mut methods: Vec<&str> = Vec::new();
+    for row in rows {
+        if !methods.contains(&row.method.as_str()) {
+            methods.push(&row.method);
+        }
+    }
+    let told = few("clusters", rows.iter().filter_map(|row| row.clusters))?;
+    if told.is_empty() || rows.iter().any(|row| row.clusters.is_none()) {
+        return plot_error("has a row without a number of clusters");
+    }
+    few("method", methods.iter().copied())?;
+    let look =
+        |row: &CurveRow| MarkerStyle::of(told.iter().position(|k| Some(*k) == row.clusters).unwrap_or(0));
+
+    let mut legend = Legend::default();
+    for (at, clusters) in told.iter().enumerate() {
+        legend.add(Key::Curve(MarkerStyle::of(at)), format!("K = {clusters}"));
+    }
+    if let Some(mark) = mark {
+        legend.add(Key::Dashes, mark.name.clone());
+    }
+    let samples = distinct(rows.iter().map(|row| row.cells.n));
+    let samples = match samples[..] {
+        [n] => format!("n = {n}"),
+        [least, .., most] => format!("n = {least} to {most}"),
+        [] => String::new(),
+    };
+    legend.add(Key::Whisker, format!("95 % interval, {samples}"));
+
+    if rows.iter().any(|row| row.cells.lowest.is_some()) {
+        legend.add(Key::Band(INK, FAINT), "lowest to highest simulation");
+    }
+    let (above, each) = (20.0, 186.0);
+    let top = legend.height();
+    let height = top + methods.len() as f64 * (above + each) + X_LABELS - X_BARE + 4.0;
+    paint(height, |canvas| {
+        legend.render(canvas)?;
+        let (x, y) = kind.axes(rows);
+        let y = Axis { name: "mean ARI", ..y };
+        for (at, method) in methods.iter().enumerate() {
+            let last = at + 1 == methods.len();
+            let outer = Rect {
+                left: 4.0,
+                top: top + at as f64 * (above + each) + above,
+                width: WIDTH - 10.0,
+                height: each + if last { X_LABELS - X_BARE } else { 0.0 },
+            };
+            let x = Axis { name: if last { x.name } else { "" }, ..x.clone() };
+            let panel = Panel::render(canvas, outer, Y_LABELS, &x, &y)?;
+            panel.title(canvas, name(method))?;
+            if let Some(mark) = mark {
+                panel.reference(canvas, mark.value)?;
+            }
+            let mine: Vec<CurveRow> = rows.iter().filter(|row| row.method == *method).cloned().collect();
+            let all = series(&mine);
+            let looks: Vec<MarkerStyle> = all.iter().map(|series| look(series[0])).collect();
+            curves(canvas, &panel, &all, &looks, &kind)?;
+        }
+        Ok(())
+    })
+}
+
+fn missing() -> MarkerStyle {
+    MarkerStyle { colour: GREY, shape: Shape::Cross, hollow: false }
+}
+
+/// Draws series, beside each other where they share an x.
+fn curves(
+    canvas: &Canvas,
+    panel: &Panel,
+    all: &[Vec<&CurveRow>],
+    looks: &[MarkerStyle],
+    kind: &Kind,
+) -> Rendered {
+    let xs = distinct(all.iter().flatten().map(|row| kind.x(row)));
+    let room =
+        xs.windows(2).map(|pair| panel.at(pair[1], 0.0).0 - panel.at(pair[0], 0.0).0).fold(60.0, f64::min);
+    let apart = (0.8 * room / all.len() as f64).min(9.0);
+    let shift = |at: usize| apart * (at as f64 - (all.len() - 1) as f64 / 2.0);
+    let place = |at: usize, row: &CurveRow, y: f64| {
+        let (x, y) = panel.at(kind.x(row), y);
+        (x + shift(at), y)
+    };
+    let mut sorted: Vec<(usize, Vec<&CurveRow>, MarkerStyle)> = Vec::new();
+    for (at, series) in all.iter().enumerate() {
+        let mut series = series.clone();
+        series.sort_by(|a, b| kind.x(a).total_cmp(&kind.x(b)));
+        sorted.push((at, series, looks[at]));
+    }
+    // From the back to the front, so that no bar hides a marker.
+    for (at, series, look) in sorted.iter().filter(|(.., look)| !look.hollow) {
+        for row in series {
+            if let (Some(low), Some(high)) = (row.cells.lowest, row.cells.highest) {
+                let ((x, low), (_, high)) = (place(*at, row, low), place(*at, row, high));
+                canvas.bar((x - 4.0, high), (x + 4.0, low), look.colour.mix(FAINT))?;
+            }
+        }
+        for run in series.split(|row| row.value.is_none()).filter(|run| run.len() > 1) {
+            let line: Vec<_> = run.iter().filter_map(|row| Some(place(*at, row, row.value?))).collect();
+            canvas.line(&line, stroke(look.colour, 1.4))?;
+        }
+    }
+    for (at, series, look) in &sorted {
+        for row in series {
+            if let (Some(low), Some(high)) = (row.cells.low, row.cells.high) {
+                canvas.line(&[place(*at, row, low), place(*at, row, high)], stroke(look.colour, 1.3))?;
+            }
+            match row.value {
+                Some(value) => canvas.marker(place(*at, row, value), RADIUS, *look)?,
+                None => canvas.marker(place(*at, row, 0.0), RADIUS, missing())?,
+            }
+        }
+    }
+    Ok(())
+}
+
+/// A line of sample sizes above the axes: a rate without them says little.
+fn numbers(
+    canvas: &Canvas,
+    panel: &Panel,
+    y: f64,
+    series: &[&CurveRow],
+    look: MarkerStyle,
+    kind: &Kind,
+) -> Rendered {
+    canvas.marker((panel.inner.left - 40.0, y), RADIUS, look)?;
+    canvas.text("n =", (panel.inner.left - 13.0, y), Anchor::End, SMALL, INK)?;
+    let mut places: Vec<(f64, String)> =
+        series.iter().map(|row| (panel.at(kind.x(row), 0.0).0, row.cells.n.to_string())).collect();
+    places.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let room = places.windows(2).map(|pair| pair[1].0 - pair[0].0).fold(60.0, f64::min);
+    let widest = places.iter().map(|(_, text)| text_width(text, 1.0) + 0.3).fold(0.0, f64::max);
+    let size = SMALL.min(room / widest);
+    for (x, text) in places {
+        canvas.text(&text, (x, y), Anchor::Middle, size, INK)?;
+    }
+    Ok(())
+}

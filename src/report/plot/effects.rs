@@ -1,0 +1,157 @@
+//! Values of one setting → a picture of what each gives, a line a value and a panel a result.
+
+use std::ops::Range;
+
+use plotters::style::WHITE;
+
+use super::axes::{Axis, Panel, Rect, X_BARE, around};
+use super::canvas::{
+    Anchor, BLUE, FONT, GREY, INK, MarkerStyle, PlotError, Rendered, SMALL, Shape, VERMILLION, WIDTH, paint,
+    stroke, text_width,
+};
+use super::values::check;
+
+/// A value with its 95 % interval; none where there is no sample.
+pub type Cell = Option<(f64, Option<(f64, f64)>)>;
+
+/// A line of the picture.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Line {
+    /// What stands on its left; the first line is the default.
+    pub label: String,
+    /// One for each panel.
+    pub cells: Vec<Cell>,
+}
+
+/// A panel of the picture.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Column {
+    /// What it shows.
+    pub title: &'static str,
+    /// Whether it is a share, so that its axis goes from 0 to 1.
+    pub share: bool,
+    /// The published value, if there is one.
+    pub published: Option<f64>,
+}
+
+const LINE: f64 = 19.0;
+const LABELS: f64 = 176.0;
+const GAP: f64 = 12.0;
+/// Where a label is broken.
+const BREAK: &str = ", ";
+
+/// The picture.
+///
+/// # Errors
+/// If a value cannot be placed.
+pub fn render(columns: &[Column], lines: &[Line]) -> Result<String, PlotError> {
+    let finite = lines.iter().flat_map(|line| line.cells.iter().flatten()).map(|(value, _)| *value);
+    check("value", finite, -1e6, 1e6)?;
+    let labels: Vec<Vec<String>> = lines.iter().map(|line| broken(&line.label)).collect();
+    let heights: Vec<f64> = labels.iter().map(|label| LINE + 14.0 * (label.len() - 1) as f64).collect();
+    let (top, inside) = (40.0, heights.iter().sum::<f64>() + 8.0);
+    let height = top + inside + X_BARE + 4.0;
+    let wide = (WIDTH - LABELS - 8.0) / columns.len() as f64;
+    paint(height, |canvas| {
+        let middle = |row: usize| top + 4.0 + heights[..row].iter().sum::<f64>() + heights[row] / 2.0;
+        for (row, label) in labels.iter().enumerate() {
+            for (at, text) in label.iter().enumerate() {
+                let y = middle(row) + 14.0 * (at as f64 - (label.len() - 1) as f64 / 2.0);
+                canvas.text(
+                    text,
+                    (LABELS - 4.0, y),
+                    Anchor::End,
+                    SMALL,
+                    if row == 0 { VERMILLION } else { INK },
+                )?;
+            }
+        }
+        for (at, column) in columns.iter().enumerate() {
+            let cells: Vec<Cell> = lines.iter().map(|line| line.cells.get(at).copied().flatten()).collect();
+            let range = if column.share { -0.04..1.04 } else { whole(ends(&cells)) };
+            // Room for two labels: the ends of the scale, or the whole numbers next to them.
+            let mut ticks = vec![range.start.ceil(), range.end.floor()];
+            ticks.retain(|tick| range.contains(tick));
+            ticks.dedup();
+            let axis = Axis { ticks, ..Axis::new("", range.clone(), 2) };
+            let bare = Axis { ticks: Vec::new(), ..Axis::new("", 0.0..1.0, 2) };
+            let left = LABELS + at as f64 * wide + GAP / 2.0;
+            let outer = Rect { left, top, width: wide - GAP, height: inside + X_BARE };
+            let panel = Panel::render(canvas, outer, 0.0, &axis, &bare)?;
+            for (row, text) in column.title.split('\n').enumerate() {
+                let place = (left + (wide - GAP) / 2.0, 10.0 + 15.0 * row as f64);
+                canvas.text(text, place, Anchor::Middle, FONT, INK)?;
+            }
+            let vertical = |value: f64| {
+                let x = panel.at(value, 0.0).0;
+                ((x, panel.inner.top), (x, panel.inner.top + panel.inner.height))
+            };
+            if let Some(published) = column.published {
+                let (from, to) = vertical(published);
+                canvas.dashes(from, to, stroke(GREY, 1.4))?;
+            }
+            if let Some((default, _)) = cells[0] {
+                let (from, to) = vertical(default);
+                canvas.line(&[from, to], stroke(VERMILLION, 0.8))?;
+            }
+            for (row, cell) in cells.iter().enumerate() {
+                let colour = if row == 0 { VERMILLION } else { BLUE };
+                match cell {
+                    None => canvas.text(
+                        "no sample",
+                        (left + (wide - GAP) / 2.0, middle(row)),
+                        Anchor::Middle,
+                        SMALL,
+                        GREY,
+                    )?,
+                    Some((value, interval)) => {
+                        let x = |value: f64| panel.at(value, 0.0).0;
+                        if let Some((low, high)) = interval {
+                            canvas.line(
+                                &[(x(*low), middle(row)), (x(*high), middle(row))],
+                                stroke(colour, 1.6),
+                            )?;
+                        }
+                        let look = MarkerStyle { colour, shape: Shape::Circle, hollow: false };
+                        canvas.marker(
+                            (x(*value), middle(row)),
+                            4.2,
+                            MarkerStyle { colour: WHITE, ..look },
+                        )?;
+                        canvas.marker((x(*value), middle(row)), 3.6, look)?;
+                    }
+                }
+            }
+        }
+        Rendered::Ok(())
+    })
+}
+
+/// Whole numbers around all values, and some room.
+fn whole(values: impl Iterator<Item = f64>) -> Range<f64> {
+    let range = around(values, 0.0);
+    if range.start.is_finite() { range.start.floor() - 0.2..range.end.ceil() + 0.2 } else { -0.2..1.2 }
+}
+
+/// All values and ends of intervals.
+fn ends(cells: &[Cell]) -> impl Iterator<Item = f64> + '_ {
+    cells.iter().flatten().flat_map(|(value, interval)| {
+        let (low, high) = interval.unzip();
+        [Some(*value), low, high].into_iter().flatten()
+    })
+}
+
+/// A label in as many lines as it needs.
+fn broken(label: &str) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for piece in label.split(BREAK) {
+        match lines.last_mut() {
+            Some(line) if text_width(&format!("{line}{BREAK}{piece}"), SMALL) < LABELS - 10.0 => {
+                line.push_str(BREAK);
+                line.push_str(piece);
+            }
+            _ => lines.push(piece.to_owned()),
+        }
+    }
+    lines
+}

@@ -1,0 +1,184 @@
+//! Read settings from TOML and lay them over `reproduce/paper.toml`.
+//!
+//! `reproduce/paper.toml` is compiled in as the default, so that it is the only place where a default is
+//! written. A user's file is laid over it; a key that `paper.toml` does not have is an error.
+
+use std::fs::File;
+use std::io::{self, Read};
+use std::path::Path;
+
+use toml::{Table, Value};
+
+use super::error::SettingsError;
+use super::sections::Settings;
+use crate::files::one_line;
+
+/// `reproduce/paper.toml` itself, whose comments say where each value is from.
+pub const PAPER: &str = include_str!("../../reproduce/paper.toml");
+const QUICK: &str = include_str!("../../reproduce/quick.toml");
+
+/// Longest settings file, in bytes: far above any, and far below what a device or a wrong file may have.
+const LONGEST_FILE: u64 = 1 << 20;
+
+impl Settings {
+    /// The settings of the replication: `reproduce/paper.toml`.
+    pub fn paper() -> Self {
+        Table::try_into(paper_table()).expect("reproduce/paper.toml matches Settings; a test checks it")
+    }
+
+    /// `reproduce/paper.toml`, with `reproduce/quick.toml` over it if `quick`, and `file` over both.
+    ///
+    /// # Errors
+    /// If the file cannot be read, is malformed, has an unknown key, or a value is out of range.
+    pub fn load(quick: bool, file: Option<&Path>) -> Result<Self, SettingsError> {
+        let mut table = paper_table();
+        let mut origin = "reproduce/paper.toml".to_owned();
+        if quick {
+            overlay(&mut table, parse(QUICK, "reproduce/quick.toml")?, "", "reproduce/quick.toml")?;
+        }
+        if let Some(path) = file {
+            let text = read_toml(path)?;
+            origin = path.display().to_string();
+            overlay(&mut table, parse(&text, &origin)?, "", &origin)?;
+        }
+        Self::checked(table, &origin)
+    }
+
+    /// `reproduce/paper.toml` with tables laid over it, one after the other; `origin` says where they are from.
+    ///
+    /// # Errors
+    /// If a key is unknown, or a value is out of range.
+    pub fn overlaid<'a>(
+        tables: impl IntoIterator<Item = &'a Table>,
+        origin: &str,
+    ) -> Result<Self, SettingsError> {
+        let mut table = paper_table();
+        for over in tables {
+            overlay(&mut table, over.clone(), "", origin)?;
+        }
+        Self::checked(table, origin)
+    }
+
+    fn checked(table: Table, origin: &str) -> Result<Self, SettingsError> {
+        let settings: Self = table.try_into().map_err(|error: toml::de::Error| SettingsError::Malformed {
+            message: one_line(&error.to_string()),
+            origin: origin.to_owned(),
+        })?;
+        settings.validate()?;
+        Ok(settings)
+    }
+}
+
+/// The text of a file of settings or of a design.
+///
+/// # Errors
+/// If it cannot be read, or is too long to be one.
+pub fn read_toml(path: &Path) -> Result<String, SettingsError> {
+    let mut text = String::new();
+    let read = File::open(path).and_then(|file| file.take(LONGEST_FILE + 1).read_to_string(&mut text));
+    match read {
+        Ok(length) if length as u64 > LONGEST_FILE => {
+            Err(io::Error::other(format!("it is longer than {LONGEST_FILE} bytes")))
+        }
+        Ok(_) => Ok(text),
+        Err(error) => Err(error),
+    }
+    .map_err(|reason| SettingsError::Unreadable { path: path.to_owned(), reason })
+}
+
+fn paper_table() -> Table {
+    parse(PAPER, "reproduce/paper.toml").expect("reproduce/paper.toml is TOML; a test checks it")
+}
+
+fn parse(text: &str, origin: &str) -> Result<Table, SettingsError> {
+    text.parse().map_err(|error: toml::de::Error| {
+        let line = error
+            .span()
+            .map_or(String::new(), |span| format!("line {}: ", 1 + text[..span.start].matches('\n').count()));
+        SettingsError::Malformed {
+            origin: origin.to_owned(),
+            message: one_line(&format!("{line}{}", error.message())),
+        }
+    })
+}
+
+/// Lays `over` on `base`, key by key; `section` and `origin` are for the message.
+fn overlay(base: &mut Table, over: Table, section: &str, origin: &str) -> Result<(), SettingsError> {
+    for (name, value) in over {
+        let key = format!("{section}{}", name.escape_debug());
+        match (base.get_mut(&name), value) {
+            (Some(Value::Table(base)), Value::Table(over)) => {
+                overlay(base, over, &format!("{key}."), origin)?
+            }
+            // TOML writes 1 for 1.0; a person does too.
+            (Some(slot @ Value::Float(_)), Value::Integer(whole)) => *slot = Value::Float(whole as f64),
+            (Some(slot), value) if slot.same_type(&value) => *slot = value,
+            (Some(slot), value) => {
+                return Err(SettingsError::Malformed {
+                    origin: origin.to_owned(),
+                    message: format!(
+                        "`{key}` has type {}, but must have type {}",
+                        value.type_str(),
+                        slot.type_str()
+                    ),
+                });
+            }
+            (None, _) => return Err(SettingsError::Unknown { origin: origin.to_owned(), key }),
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::stages::schema::EdgeWeight;
+
+    fn load(text: &str) -> Result<Settings, SettingsError> {
+        let file = tempfile::NamedTempFile::new().unwrap();
+        std::fs::write(file.path(), text).unwrap();
+        Settings::load(false, Some(file.path()))
+    }
+
+    #[test]
+    fn both_files_of_the_repository_load() {
+        let paper = Settings::load(false, None).unwrap();
+        assert_eq!(paper, Settings::paper());
+        assert_eq!((paper.physics.samples(0.1), paper.physics.steps_per_sample(0.1)), (100_000, 10));
+        assert!(Settings::load(true, None).unwrap().physics.samples(0.1) < 100_000);
+    }
+
+    #[test]
+    fn a_file_changes_only_what_it_names() {
+        let mut expected = Settings::paper();
+        expected.motion.coordination = 1.0;
+        expected.schema.edge_weight = EdgeWeight::Collapsed;
+        assert_eq!(
+            load("[motion]\ncoordination = 1\n[schema]\nedge_weight = \"collapsed\"").unwrap(),
+            expected
+        );
+    }
+
+    #[test]
+    fn mistakes_are_named() {
+        for (text, expected) in [
+            ("[motion]\nspeed = 3", "unknown setting `motion.speed`"),
+            ("[moton]\nepoch = 3", "unknown setting `moton`"),
+            ("[motion]\nepoch = \"long\"", "`motion.epoch` has type string, but must have type integer"),
+            ("[motion]\nepoch = -3", "motion.epoch"),
+            ("[motion\nepoch = 3", "line 1:"),
+            ("[schema]\ncomponents = 0", "`schema.components` is 0, but must be 1 to 1000"),
+            ("[schema]\nedge_weight = \"prim\"", "unknown variant `prim`"),
+            ("[physics]\nstep = nan", "`physics.step` is NaN"),
+            ("[agent]\ndensity = 1e-320", "agent.density"),
+            ("[physics]\nduration = 1e9", "`physics.duration` is 1000000000"),
+            ("[physics]\nstep = 0.03", "a whole number of physics.step"),
+            ("[skin]\ncaps = 3", "even"),
+            ("[experiment]\ndimensions = []", "experiment.dimensions"),
+        ] {
+            let message = load(text).unwrap_err().to_string();
+            assert!(message.contains(expected), "{text:?} gave {message:?}");
+            assert!(!message.contains('\n'), "{message:?} is one line");
+        }
+    }
+}

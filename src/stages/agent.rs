@@ -1,0 +1,306 @@
+//! Settings → the body: parts, joints and sensor sites; the ground truth of every evaluation lives here.
+//!
+//! Section 5.1 and figure 4: five cylinders, four universal joints, 840 sensors. The figure is all that
+//! the paper says of the geometry, so the morphology and every length are settings (ours).
+
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI, TAU};
+
+use serde::{Deserialize, Serialize};
+
+use crate::numerics::range::{Checked, check, count, length, moderate};
+use crate::stages::tree::Truth;
+
+/// A position or direction in space.
+pub type Vector3 = [f64; 3];
+
+/// Parts of every body.
+pub const PARTS: usize = 5;
+
+/// How the parts are joined.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Morphology {
+    /// Five parts in a row.
+    Chain,
+    /// A trunk with two limbs at each end.
+    Star,
+    /// A trunk with two arms at right angles on one end, and two further parts in line on the other.
+    Tee,
+    /// As the tee, with the arms raised by 45°.
+    Y,
+}
+
+/// Geometry of the body; lengths in m, density in kg/m³.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Geometry {
+    /// Which part is joined to which.
+    pub morphology: Morphology,
+    /// Length of each cylinder, m.
+    pub part_length: f64,
+    /// Radius of each cylinder, m.
+    pub part_radius: f64,
+    /// Distance between the two ends that a joint connects, m.
+    pub gap: f64,
+    /// Density of the parts, kg/m³.
+    pub density: f64,
+}
+
+/// Layout of the sensors on each part.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Skin {
+    /// Sensors in a ring around the cylinder.
+    pub around: usize,
+    /// Rings along the cylinder.
+    pub along: usize,
+    /// Sensors on both end caps together; half of them on each.
+    pub caps: usize,
+}
+
+impl Geometry {
+    /// Checks the range of each setting.
+    ///
+    /// # Errors
+    /// The first setting that is outside its range.
+    pub fn check(&self) -> Checked {
+        length("agent.part_length", self.part_length)?;
+        length("agent.part_radius", self.part_radius)?;
+        let flat = self.part_radius > 10.0 * self.part_length;
+        check("agent.part_radius", self.part_radius, !flat, "at most ten times agent.part_length")?;
+        check("agent.gap", self.gap, (0.0..=1e3).contains(&self.gap), "0 to 1000")?;
+        moderate("agent.density", self.density)
+    }
+}
+
+impl Skin {
+    /// Sensors on each part.
+    pub fn sensors_per_part(&self) -> usize {
+        self.around.saturating_mul(self.along).saturating_add(self.caps)
+    }
+
+    /// Checks the range of each setting.
+    ///
+    /// # Errors
+    /// The first setting that is outside its range.
+    pub fn check(&self) -> Checked {
+        count("skin.around", self.around)?;
+        count("skin.along", self.along)?;
+        check("skin.caps", self.caps, self.caps.is_multiple_of(2), "even: half on each cap")
+    }
+}
+
+/// A solid cylinder, in the rest pose.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Part {
+    /// Centre of mass, m.
+    pub centre: Vector3,
+    /// Unit vector along the cylinder, from its proximal to its distal end.
+    pub axis: Vector3,
+    /// Length, m.
+    pub length: f64,
+    /// Radius, m.
+    pub radius: f64,
+    /// Density, kg/m³.
+    pub density: f64,
+}
+
+/// A universal joint, in the rest pose.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Joint {
+    /// Index of the part that carries the child.
+    pub parent: usize,
+    /// Index of the part that is carried.
+    pub child: usize,
+    /// Where both parts meet, m: the middle of the gap between their ends.
+    pub anchor: Vector3,
+    /// The two axes of rotation, at right angles to each other and to the child's own axis.
+    pub axes: [Vector3; 2],
+}
+
+/// A tactile sensor in the frame of its part, whose z axis is the cylinder's.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Site {
+    /// The part it sits on.
+    pub part: usize,
+    /// Position, m.
+    pub position: Vector3,
+    /// Outward unit normal n_i of the surface.
+    pub normal: Vector3,
+}
+
+/// The body and its skin.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Agent {
+    /// Part 0 is the root of the tree.
+    pub parts: Vec<Part>,
+    /// Joint j carries part j + 1.
+    pub joints: Vec<Joint>,
+    /// Sensors, those of part 0 first.
+    pub sites: Vec<Site>,
+}
+
+/// A limb: the part that carries it, on which end (true: the distal one), and its direction in the plane
+/// of the body, as an angle to the x axis.
+type Limb = (usize, bool, f64);
+
+fn limbs(morphology: Morphology) -> [Limb; PARTS - 1] {
+    match morphology {
+        Morphology::Chain => [(0, true, 0.0), (1, true, 0.0), (2, true, 0.0), (3, true, 0.0)],
+        Morphology::Star => [
+            (0, true, FRAC_PI_4),
+            (0, true, -FRAC_PI_4),
+            (0, false, PI - FRAC_PI_4),
+            (0, false, PI + FRAC_PI_4),
+        ],
+        Morphology::Tee => [(0, true, FRAC_PI_2), (0, true, -FRAC_PI_2), (0, false, PI), (3, true, PI)],
+        Morphology::Y => [(0, true, FRAC_PI_4), (0, true, -FRAC_PI_4), (0, false, PI), (3, true, PI)],
+    }
+}
+
+impl Agent {
+    /// Builds the body in its rest pose: the trunk along x, all parts in the plane z = 0.
+    pub fn new(geometry: &Geometry, skin: &Skin) -> Self {
+        let along =
+            |from: Vector3, axis: Vector3, distance: f64| [0, 1, 2].map(|i| from[i] + distance * axis[i]);
+        let half = geometry.part_length / 2.0;
+        let cylinder = |centre, axis| Part {
+            centre,
+            axis,
+            length: geometry.part_length,
+            radius: geometry.part_radius,
+            density: geometry.density,
+        };
+        let mut parts = vec![cylinder([0.0; 3], [1.0, 0.0, 0.0])];
+        let mut joints = Vec::new();
+        for (parent, distal, angle) in limbs(geometry.morphology) {
+            let carrier = &parts[parent];
+            let end = along(carrier.centre, carrier.axis, if distal { half } else { -half });
+            let axis = [angle.cos(), angle.sin(), 0.0];
+            joints.push(Joint {
+                parent,
+                child: parts.len(),
+                anchor: along(end, axis, geometry.gap / 2.0),
+                axes: [[0.0, 0.0, 1.0], [-axis[1], axis[0], 0.0]],
+            });
+            parts.push(cylinder(along(end, axis, geometry.gap + half), axis));
+        }
+        let sites = parts.iter().enumerate().flat_map(|(at, part)| sites(at, part, skin)).collect();
+        Self { parts, joints, sites }
+    }
+
+    /// The true part of each sensor.
+    pub fn labels(&self) -> Vec<usize> {
+        self.sites.iter().map(|site| site.part).collect()
+    }
+
+    /// The true tree as (child, parent) pairs.
+    pub fn tree(&self) -> Vec<(usize, usize)> {
+        self.joints.iter().map(|joint| (joint.child, joint.parent)).collect()
+    }
+
+    /// Both.
+    pub fn truth(&self) -> Truth {
+        Truth { labels: self.labels(), tree: self.tree() }
+    }
+}
+
+/// The sensors of one part: rings on the side, evenly spaced, then one ring on each cap at two thirds of
+/// the radius (the mean radius of a disc).
+fn sites(part: usize, cylinder: &Part, skin: &Skin) -> Vec<Site> {
+    let ring = |count: usize| {
+        (0..count).map(move |i| {
+            let (sine, cosine) = (TAU * i as f64 / count as f64).sin_cos();
+            [cosine, sine, 0.0]
+        })
+    };
+    let on_ring =
+        |direction: Vector3, radius: f64, height: f64| [radius * direction[0], radius * direction[1], height];
+    let (length, radius) = (cylinder.length, cylinder.radius);
+    let mut sites = Vec::with_capacity(skin.sensors_per_part());
+    for row in 0..skin.along {
+        let height = length * ((row as f64 + 0.5) / skin.along as f64 - 0.5);
+        sites.extend(ring(skin.around).map(|normal| Site {
+            part,
+            position: on_ring(normal, radius, height),
+            normal,
+        }));
+    }
+    for side in [-1.0, 1.0] {
+        sites.extend(ring(skin.caps / 2).map(|direction| Site {
+            part,
+            position: on_ring(direction, radius * 2.0 / 3.0, side * length / 2.0),
+            normal: [0.0, 0.0, side],
+        }));
+    }
+    sites
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SKIN: Skin = Skin { around: 12, along: 14, caps: 0 };
+
+    fn geometry(morphology: Morphology) -> Geometry {
+        Geometry { morphology, part_length: 0.4, part_radius: 0.05, gap: 0.02, density: 1000.0 }
+    }
+
+    fn agent(morphology: Morphology) -> Agent {
+        Agent::new(&geometry(morphology), &SKIN)
+    }
+
+    #[test]
+    fn the_paper_s_agent_has_five_parts_four_joints_and_840_sensors() {
+        let agent = agent(Morphology::Chain);
+        assert_eq!((agent.parts.len(), agent.joints.len(), agent.sites.len()), (5, 4, 840));
+        for part in 0..5 {
+            assert_eq!(agent.labels().iter().filter(|&&label| label == part).count(), 168);
+        }
+    }
+
+    #[test]
+    fn each_morphology_has_its_tree() {
+        use Morphology::*;
+        for (morphology, tree) in [
+            (Chain, [(1, 0), (2, 1), (3, 2), (4, 3)]),
+            (Star, [(1, 0), (2, 0), (3, 0), (4, 0)]),
+            (Tee, [(1, 0), (2, 0), (3, 0), (4, 3)]),
+            (Y, [(1, 0), (2, 0), (3, 0), (4, 3)]),
+        ] {
+            assert_eq!(agent(morphology).tree(), tree, "{morphology:?}");
+        }
+    }
+
+    #[test]
+    fn joints_sit_half_a_gap_from_both_ends_with_axes_across_the_child() {
+        let reach = (0.4 + 0.02) / 2.0;
+        for morphology in [Morphology::Chain, Morphology::Star, Morphology::Tee, Morphology::Y] {
+            let agent = agent(morphology);
+            for joint in &agent.joints {
+                let child = &agent.parts[joint.child];
+                let dot = |a: Vector3, b: Vector3| (0..3).map(|i| a[i] * b[i]).sum::<f64>();
+                let offset = [0, 1, 2].map(|i| child.centre[i] - joint.anchor[i]);
+                assert!((dot(offset, child.axis) - reach).abs() < 1e-12, "{morphology:?}");
+                assert!(dot(joint.axes[0], joint.axes[1]).abs() < 1e-12);
+                assert!(joint.axes.iter().all(|&axis| dot(axis, child.axis).abs() < 1e-12));
+            }
+        }
+    }
+
+    #[test]
+    fn sensors_lie_on_the_surface_and_look_outward() {
+        let skin = Skin { around: 12, along: 12, caps: 24 };
+        let agent = Agent::new(&geometry(Morphology::Chain), &skin);
+        assert_eq!(agent.sites.len(), 840);
+        let (radius, half) = (0.05, 0.2);
+        for Site { position: [x, y, z], normal, .. } in &agent.sites {
+            if normal[2] == 0.0 {
+                assert!((x.hypot(*y) - radius).abs() < 1e-12 && z.abs() < half);
+                assert!((x * normal[0] + y * normal[1] - radius).abs() < 1e-12);
+            } else {
+                assert!(x.hypot(*y) < radius && (z * normal[2] - half).abs() < 1e-12);
+            }
+        }
+    }
+}

@@ -1,0 +1,17 @@
+//! Stage 5, `map`: place the sensors in d dimensions by multidimensional scaling (section 4.1).
+//!
+//! In: [`Distances`](super::distance::Distances), M × M. Out: a [`BodyMap`], M × d, in the unit of the distances.
+//! The paper says "MDS" and cites Kruskal; which variant it ran is open. [Classical](ClassicalScaling) scaling is the
+//! default; metric and nonmetric scaling by [majorisation](smacof()) start from its map.
+
+mod classical;
+mod coordinates;
+mod maps;
+mod settings;
+mod smacof;
+
+pub use self::classical::{ClassicalScaling, MapError};
+pub use self::coordinates::BodyMap;
+pub use self::maps::BodyMaps;
+pub use self::settings::{Map, MapMethod};
+pub use self::smacof::{Fit, Improvement, Majorisation, smacof};

@@ -1,0 +1,179 @@
+//! Stage 4. Symbols → information metric between all pairs of sensors (equations 22 to 24).
+//!
+//! D(X, Y) = H(X|Y) + H(Y|X) in bits. It is 0 where each sensor's symbol tells the other's, so that two
+//! sensors that differ by names of symbols only are at distance 0: a metric up to relabelling.
+
+use rayon::prelude::*;
+
+use super::bit_planes::{BitPlanes, TILE};
+use crate::stages::quantise::Symbols;
+
+/// A symmetric matrix of distances with a zero diagonal.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Distances {
+    /// M, number of sensors.
+    pub sensors: usize,
+    /// M × M, by rows.
+    pub values: Vec<f64>,
+}
+
+impl Distances {
+    /// Distance between sensors `i` and `j`.
+    pub fn get(&self, i: usize, j: usize) -> f64 {
+        self.values[i * self.sensors + j]
+    }
+}
+
+/// Most sensors whose distances are computed: a matrix of 3.2 GB.
+pub const MOST_SENSORS: usize = 20_000;
+
+/// Most levels for which joint counts by bit planes, (N − 1)² passes over T bits, beat one pass over T
+/// symbols.
+const MOST_PLANES: usize = 10;
+
+/// The information metric between all pairs of sensors, in bits.
+pub fn information_metric(symbols: &Symbols) -> Distances {
+    let (sensors, levels) = (symbols.sensors(), symbols.levels);
+    let planes = (levels <= MOST_PLANES).then(|| BitPlanes::new(symbols));
+    let marginals = match &planes {
+        Some(planes) => planes.marginals(symbols),
+        None => symbols.series().map(|series| histogram(series, levels)).collect(),
+    };
+    let logarithms: Vec<f64> = (0..=symbols.samples).map(|count| libm::log2(count.max(1) as f64)).collect();
+
+    let tiles: Vec<(usize, usize)> = (0..sensors)
+        .step_by(TILE)
+        .flat_map(|row| (row..sensors).step_by(TILE).map(move |column| (row, column)))
+        .collect();
+    let pairs = |&(row, column): &(usize, usize)| {
+        let rows = row..(row + TILE).min(sensors);
+        rows.flat_map(move |i| (column.max(i + 1)..(column + TILE).min(sensors)).map(move |j| (i, j)))
+    };
+    let tiled: Vec<Vec<f64>> = tiles
+        .par_iter()
+        .map(|tile| {
+            let counted = planes.as_ref().map(|planes| planes.count(tile.0, tile.1));
+            let mut joint = vec![0; levels * levels];
+            let metric = |(i, j)| {
+                match &counted {
+                    Some(counted) => counted.joint(i, j, &marginals, &mut joint),
+                    None => count(symbols, i, j, &mut joint),
+                }
+                metric_of_counts(&joint, &marginals[i], &marginals[j], &logarithms)
+            };
+            pairs(tile).map(metric).collect()
+        })
+        .collect();
+
+    let mut values = vec![0.0; sensors * sensors];
+    for ((i, j), distance) in tiles.iter().flat_map(pairs).zip(tiled.into_iter().flatten()) {
+        values[i * sensors + j] = distance;
+        values[j * sensors + i] = distance;
+    }
+    Distances { sensors, values }
+}
+
+/// H(X|Y) + H(Y|X) from joint counts: Σ c_xy [(log₂ c_x − log₂ c_xy) + (log₂ c_y − log₂ c_xy)] / T.
+///
+/// Every term is at least 0 and exactly 0 where a symbol tells the other, so that neither rounding nor
+/// cancellation can make a distance negative. `logarithms` has log₂ c for all c from 1 to T, and 0 for c = 0: T
+/// of them are found, not two for every cell of every pair.
+fn metric_of_counts(joint: &[u32], first: &[u32], second: &[u32], logarithms: &[f64]) -> f64 {
+    let log = |count: u32| logarithms[count as usize];
+    let mut sum = 0.0;
+    for (row, &x) in joint.chunks_exact(second.len()).zip(first) {
+        for (&both, &y) in row.iter().zip(second) {
+            sum += f64::from(both) * ((log(x) - log(both)) + (log(y) - log(both)));
+        }
+    }
+    sum / (logarithms.len() - 1) as f64
+}
+
+/// How often each symbol occurs.
+fn histogram(series: &[u8], levels: usize) -> Vec<u32> {
+    let mut counts = vec![0; levels];
+    series.iter().for_each(|&symbol| counts[usize::from(symbol)] += 1);
+    counts
+}
+
+/// Joint counts of two sensors, one pass over their symbols: the plain definition (equation 24).
+fn count(symbols: &Symbols, i: usize, j: usize, joint: &mut [u32]) {
+    joint.fill(0);
+    let series = |sensor: usize| &symbols.values[sensor * symbols.samples..][..symbols.samples];
+    for (&x, &y) in series(i).iter().zip(series(j)) {
+        joint[usize::from(x) * symbols.levels + usize::from(y)] += 1;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::RngExt;
+
+    use super::*;
+    use crate::numerics::rng::stream;
+
+    fn random_symbols(sensors: usize, samples: usize, levels: usize) -> Symbols {
+        let mut rng = stream(5, 1, "symbols", levels);
+        let mut values: Vec<u8> = (0..sensors * samples).map(|_| rng.random_range(0..levels as u8)).collect();
+        // Sensor 1 mostly copies sensor 0, and the last never changes.
+        for t in 0..samples {
+            if t % 7 != 0 {
+                values[samples + t] = values[t];
+            }
+            values[(sensors - 1) * samples + t] = 1;
+        }
+        Symbols { samples, levels, values }
+    }
+
+    /// Equations 22 and 23 as they are written.
+    fn by_definition(symbols: &Symbols, i: usize, j: usize) -> f64 {
+        let (n, total) = (symbols.levels, symbols.samples as f64);
+        let mut joint = vec![0; n * n];
+        count(symbols, i, j, &mut joint);
+        let p = |x: usize, y: usize| f64::from(joint[x * n + y]) / total;
+        let mut sum = 0.0;
+        for x in 0..n {
+            for y in 0..n {
+                if p(x, y) > 0.0 {
+                    let px: f64 = (0..n).map(|y| p(x, y)).sum();
+                    let py: f64 = (0..n).map(|x| p(x, y)).sum();
+                    sum -= p(x, y) * (p(x, y) / px).log2() + p(x, y) * (p(x, y) / py).log2();
+                }
+            }
+        }
+        sum
+    }
+
+    #[test]
+    fn agrees_with_the_definition_with_and_without_bit_planes() {
+        for (levels, samples) in [(2, 63), (4, 64), (5, 1000), (10, 129), (11, 500), (40, 500)] {
+            let symbols = random_symbols(19, samples, levels);
+            let distances = information_metric(&symbols);
+            for i in 0..19 {
+                assert_eq!(distances.get(i, i), 0.0);
+                for j in 0..19 {
+                    let expected = by_definition(&symbols, i, j);
+                    assert!((distances.get(i, j) - expected).abs() < 1e-12, "N = {levels}, {i}, {j}");
+                    assert_eq!(distances.get(i, j), distances.get(j, i));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn known_joint_distributions() {
+        // Two fair independent bits: H(X|Y) = H(Y|X) = 1 bit. A bit and its negation: 0. A bit and a
+        // constant: 1 bit.
+        let values = [[0, 0, 1, 1], [0, 1, 0, 1], [1, 1, 0, 0], [0, 0, 0, 0]].concat();
+        let distances = information_metric(&Symbols { samples: 4, levels: 2, values });
+        assert_eq!(distances.values[..4], [0.0, 2.0, 0.0, 1.0]);
+    }
+
+    #[test]
+    fn the_triangle_inequality_holds() {
+        let distances = information_metric(&random_symbols(12, 200, 4));
+        for (x, y, z) in (0..12).flat_map(|x| (0..12).flat_map(move |y| (0..12).map(move |z| (x, y, z)))) {
+            assert!(distances.get(x, z) <= distances.get(x, y) + distances.get(y, z) + 1e-12);
+        }
+    }
+}

@@ -1,0 +1,8 @@
+//! Stage 4, `distance`: the information metric between all pairs of sensors (equations 22 to 24).
+//!
+//! In: [`Symbols`](super::quantise::Symbols) of M sensors at T times. Out: [`Distances`], M × M, in bits.
+
+mod bit_planes;
+mod information_metric;
+
+pub use self::information_metric::{Distances, MOST_SENSORS, information_metric};

@@ -1,0 +1,135 @@
+//! Stage 7: compare a draw with the truth (section 5.2).
+//!
+//! In: a [`Draw`] of the body schema and the [`Truth`]. Out: a [`Score`]: the adjusted Rand index, whether the tree
+//! counts, and whether it is right.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+pub use crate::numerics::partition::adjusted_rand_index;
+use crate::numerics::partition::sizes;
+use crate::numerics::range::{Checked, check};
+use crate::stages::schema::Draw;
+use crate::stages::tree::{Edge, Truth};
+
+/// What counts as a success (section 5.2).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Evaluate {
+    /// Least adjusted Rand index at which a tree is counted.
+    pub eligible_ari: f64,
+}
+
+impl Evaluate {
+    /// Checks the range of each setting.
+    ///
+    /// # Errors
+    /// The first setting that is outside its range.
+    pub fn check(&self) -> Checked {
+        let ari = self.eligible_ari;
+        check("evaluate.eligible_ari", ari, (0.0..=1.0).contains(&ari), "0 to 1")
+    }
+}
+
+/// How good one draw is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Score {
+    /// Adjusted Rand index of its partition.
+    pub ari: f64,
+    /// Whether its tree counts: it has the true number of parts, and an ARI of at least
+    /// `evaluate.eligible_ari`.
+    pub eligible: bool,
+    /// Whether its tree is the true one, under the matching of its clusters to the parts.
+    pub tree_correct: bool,
+}
+
+/// Evaluates a draw; `eligible_ari` is the least ARI at which its tree counts.
+pub fn score(draw: &Draw, truth: &Truth, eligible_ari: f64) -> Score {
+    let ari = adjusted_rand_index(&draw.labels, &truth.labels);
+    Score {
+        ari,
+        // A rounding below 1 is still 1.
+        eligible: parts(&draw.labels) == truth.parts() && ari >= eligible_ari - 1e-12,
+        tree_correct: tree_correct(&draw.labels, &draw.tree, truth),
+    }
+}
+
+/// Number of estimated parts: clusters of more than one sensor.
+pub fn parts(labels: &[usize]) -> usize {
+    sizes(labels).values().filter(|size| **size > 1).count()
+}
+
+/// Whether the estimated tree is the true one: every active cluster is matched to the part that most of
+/// its sensors are on, every part is matched once, and matched edges are the true edges.
+fn tree_correct(labels: &[usize], tree: &[Edge], truth: &Truth) -> bool {
+    let mut overlap: BTreeMap<usize, BTreeMap<usize, usize>> = BTreeMap::new();
+    for (label, part) in labels.iter().zip(&truth.labels) {
+        *overlap.entry(*label).or_default().entry(*part).or_default() += 1;
+    }
+    let matching: BTreeMap<usize, usize> = overlap
+        .into_iter()
+        .filter(|(_, parts)| parts.values().sum::<usize>() > 1)
+        .filter_map(|(label, parts)| {
+            let (part, _) =
+                parts.into_iter().reduce(|most, next| if next.1 > most.1 { next } else { most })?;
+            Some((label, part))
+        })
+        .collect();
+    let mut matched: Vec<usize> = matching.values().copied().collect();
+    matched.sort_unstable();
+    matched.dedup();
+    if matched.len() != matching.len() || matched.len() != truth.parts() {
+        return false;
+    }
+    let undirected = |a: usize, b: usize| (a.min(b), a.max(b));
+    let mut estimated: Vec<_> =
+        tree.iter().map(|edge| undirected(matching[&edge.child], matching[&edge.parent])).collect();
+    let mut expected: Vec<_> = truth.tree.iter().map(|&(child, parent)| undirected(child, parent)).collect();
+    estimated.sort_unstable();
+    expected.sort_unstable();
+    estimated == expected
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn chain_of_three() -> Truth {
+        Truth { labels: [[0; 4], [1; 4], [2; 4]].concat(), tree: vec![(1, 0), (2, 1)] }
+    }
+
+    fn draw(labels: &[usize], edges: &[(usize, usize)]) -> Draw {
+        let tree = edges.iter().map(|&(child, parent)| Edge { child, parent }).collect();
+        Draw { chain: 0, sweep: 1, labels: labels.to_vec(), tree, joints: Vec::new(), log_posterior: None }
+    }
+
+    #[test]
+    fn a_tree_is_right_whatever_its_labels_and_directions() {
+        let labels = [[7; 4], [2; 4], [5; 4]].concat();
+        let right = score(&draw(&labels, &[(7, 2), (5, 2)]), &chain_of_three(), 1.0);
+        assert_eq!(right, Score { ari: 1.0, eligible: true, tree_correct: true });
+        let wrong = score(&draw(&labels, &[(2, 7), (5, 7)]), &chain_of_three(), 1.0);
+        assert_eq!(wrong, Score { ari: 1.0, eligible: true, tree_correct: false });
+    }
+
+    #[test]
+    fn a_single_sensor_is_no_part_and_spoils_a_perfect_ari() {
+        let mut labels = [[0; 4], [1; 4], [2; 4]].concat();
+        labels[0] = 9;
+        let score_at = |ari| score(&draw(&labels, &[(1, 0), (2, 1)]), &chain_of_three(), ari);
+        assert_eq!(parts(&labels), 3);
+        assert!(!score_at(1.0).eligible && score_at(0.8).eligible);
+        assert!(score_at(0.8).tree_correct);
+    }
+
+    #[test]
+    fn too_many_parts_or_two_for_one_are_never_right() {
+        let four = [[0; 4], [1; 4], [2, 2, 3, 3]].concat();
+        let score_four = score(&draw(&four, &[(1, 0), (2, 1), (3, 2)]), &chain_of_three(), 0.0);
+        assert!(!score_four.eligible && !score_four.tree_correct);
+        let doubled = [[0, 0, 1, 1], [2; 4], [2; 4]].concat();
+        let score_doubled = score(&draw(&doubled, &[(1, 0), (2, 1)]), &chain_of_three(), 0.0);
+        assert!(score_doubled.eligible && !score_doubled.tree_correct);
+    }
+}

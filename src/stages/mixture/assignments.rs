@@ -1,0 +1,192 @@
+//! Points and weighted Gaussian components → a label for each point (equation 14).
+//!
+//! Most components are far from most points. The squared distance of a point to a component is a sum of
+//! squares, so it is left as soon as it is known to be too large to matter. Where neighbours in the list of
+//! points are neighbours on the body, that takes 40 % off a sweep.
+
+use rand::{Rng, RngExt};
+
+use super::gaussian::Gaussian;
+use super::points::{BLOCK, Points};
+use crate::numerics::simd::vectorised;
+
+/// A number for each point of a block.
+type Block = [f64; BLOCK];
+
+/// A weight of this logarithm or less, in a sum that holds a 1, is below the resolution of a uniform random
+/// number (2⁻⁵³) even 3000 times over.
+const NEGLIGIBLE: f64 = -45.0;
+
+/// z_i ~ Categorical ∝ π_k N(x_i; μ_k, Σ_k), in place of the labels of before.
+pub fn draw(
+    points: &Points,
+    gaussians: &[Gaussian],
+    log_weights: &[f64],
+    labels: &mut [usize],
+    rng: &mut impl Rng,
+) {
+    vectorised(
+        #[inline(always)]
+        || draw_in_lanes(points, gaussians, log_weights, labels, rng),
+    );
+}
+
+/// [`draw`], by any vector instructions.
+#[inline(always)]
+fn draw_in_lanes(
+    points: &Points,
+    gaussians: &[Gaussian],
+    log_weights: &[f64],
+    labels: &mut [usize],
+    rng: &mut impl Rng,
+) {
+    // The components that matter to some point of the block, with its log weights.
+    let mut near: Vec<(usize, Block)> = Vec::with_capacity(gaussians.len());
+    let mut cumulative = vec![0.0; gaussians.len()];
+    for (block, labels) in points.blocks().zip(labels.chunks_mut(BLOCK)) {
+        near.clear();
+        let mut largest = [f64::NEG_INFINITY; BLOCK];
+        // First one that is likely close, so that the others are left early.
+        let first = labels[labels.len() / 2];
+        for k in std::iter::once(first).chain((0..gaussians.len()).filter(|k| *k != first)) {
+            let peak = gaussians[k].log_peak + log_weights[k];
+            let mut limits = [0.0; BLOCK];
+            for lane in 0..BLOCK {
+                limits[lane] = 2.0 * (peak - largest[lane] - NEGLIGIBLE);
+            }
+            if let Some(squares) = squares(block, &gaussians[k], &limits) {
+                let mut logs = [0.0; BLOCK];
+                for lane in 0..BLOCK {
+                    logs[lane] = peak - 0.5 * squares[lane];
+                    largest[lane] = if logs[lane] > largest[lane] { logs[lane] } else { largest[lane] };
+                }
+                near.push((k, logs));
+            }
+        }
+        // Nothing is left to chance in most blocks of a body: 8 % of a sweep.
+        if let [(only, _)] = near[..] {
+            labels.fill(only);
+            continue;
+        }
+        for (lane, label) in labels.iter_mut().enumerate() {
+            let mut total = 0.0;
+            for (sum, (_, logs)) in cumulative.iter_mut().zip(&near) {
+                let below = logs[lane] - largest[lane];
+                if below > NEGLIGIBLE {
+                    total += below.exp();
+                }
+                *sum = total;
+            }
+            let threshold = rng.random::<f64>() * total;
+            let drawn = cumulative[..near.len()].partition_point(|sum| *sum <= threshold);
+            *label = near[drawn.min(near.len() - 1)].0;
+        }
+    }
+}
+
+/// log N(x_i; μ, Σ) of each point.
+pub fn log_densities(points: &Points, gaussian: &Gaussian) -> Vec<f64> {
+    let mut densities = Vec::with_capacity(points.count.next_multiple_of(BLOCK));
+    vectorised(
+        #[inline(always)]
+        || {
+            for block in points.blocks() {
+                let squares = squares(block, gaussian, &[f64::INFINITY; BLOCK]).expect("nothing is above");
+                densities.extend(squares.map(|square| gaussian.log_peak - 0.5 * square));
+            }
+        },
+    );
+    densities.truncate(points.count);
+    densities
+}
+
+/// |P (x − μ)|² for each point of a block; none once it is known to be above the limits of all of them.
+#[inline(always)]
+fn squares(block: &[Block], gaussian: &Gaussian, limits: &Block) -> Option<Block> {
+    let mut squares = [0.0; BLOCK];
+    for i in 0..block.len() {
+        let (root, shift) = gaussian.root_row(i);
+        let mut whitened = [shift; BLOCK];
+        for (root, x) in root.iter().zip(block) {
+            for lane in 0..BLOCK {
+                whitened[lane] = root.mul_add(x[lane], whitened[lane]);
+            }
+        }
+        for lane in 0..BLOCK {
+            squares[lane] = whitened[lane].mul_add(whitened[lane], squares[lane]);
+        }
+        // Asking after every row would cost more than it spares.
+        if i % 2 == 1 || i + 1 == block.len() {
+            let mut above = true;
+            for lane in 0..BLOCK {
+                above &= squares[lane] > limits[lane];
+            }
+            if above {
+                return None;
+            }
+        }
+    }
+    Some(squares)
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::{DMatrix, DVector};
+
+    use super::*;
+    use crate::numerics::rng::{Stream, stream};
+
+    fn gaussian(dims: usize, rng: &mut Stream) -> Gaussian {
+        let mean = DVector::from_fn(dims, |_, _| rng.random_range(-1.0..1.0));
+        let root = DMatrix::from_fn(dims, dims, |i, j| match i.cmp(&j) {
+            std::cmp::Ordering::Less => 0.0,
+            std::cmp::Ordering::Equal => rng.random_range(0.5..2.0),
+            std::cmp::Ordering::Greater => rng.random_range(-0.5..0.5),
+        });
+        Gaussian::new(mean, root)
+    }
+
+    fn scene(dims: usize, rng: &mut Stream) -> Points {
+        Points::from_rows(dims, (0..37 * dims).map(|_| rng.random_range(-2.0..2.0)).collect())
+    }
+
+    #[test]
+    fn squares_agree_with_the_textbook_and_are_left_only_above_their_limits() {
+        let mut rng = stream(1, 1, "squares", 0);
+        for dims in (1..=15).chain([40]) {
+            let points = scene(dims, &mut rng);
+            let gaussian = gaussian(dims, &mut rng);
+            let (mean, inverse) = (gaussian.mean(), gaussian.precision());
+            let log_norm = 0.5 * (inverse.determinant().ln() - dims as f64 * std::f64::consts::TAU.ln());
+            for (block, first) in points.blocks().zip((0..points.count).step_by(BLOCK)) {
+                let found = squares(block, &gaussian, &[f64::INFINITY; BLOCK]).unwrap();
+                for (i, found) in (first..points.count).zip(&found) {
+                    let offset = DVector::from_row_slice(points.row(i)) - &mean;
+                    let square = offset.dot(&(&inverse * &offset));
+                    assert!((found - square).abs() < 1e-9 * square.max(1.0), "d = {dims}: {found} {square}");
+                    let log_density = gaussian.log_density(points.row(i));
+                    assert!((log_density - (log_norm - 0.5 * square)).abs() < 1e-9 * square.max(1.0));
+                }
+                assert_eq!(squares(block, &gaussian, &found), Some(found), "not above the limits");
+                let mut limits = found.map(|square| 0.99 * square);
+                assert_eq!(squares(block, &gaussian, &limits), None);
+                limits[7] = found[7];
+                assert_eq!(squares(block, &gaussian, &limits), Some(found), "one is not above");
+            }
+        }
+    }
+
+    #[test]
+    fn labels_do_not_depend_on_the_processor() {
+        let mut rng = stream(1, 1, "labels", 0);
+        for dims in 1..=15 {
+            let points = scene(dims, &mut rng);
+            let gaussians: Vec<Gaussian> = (0..5).map(|_| gaussian(dims, &mut rng)).collect();
+            let weights = [-1.0, -2.0, -0.5, -4.0, -200.0];
+            let (mut found, mut portable) = (vec![0; points.count], vec![0; points.count]);
+            draw(&points, &gaussians, &weights, &mut found, &mut stream(1, 1, "labels", 1));
+            draw_in_lanes(&points, &gaussians, &weights, &mut portable, &mut stream(1, 1, "labels", 1));
+            assert_eq!(found, portable, "d = {dims}");
+        }
+    }
+}

@@ -1,0 +1,124 @@
+//! Update and draw the parameters of a Gaussian component under a normal-inverse-Wishart prior (equations 8, 9, 16
+//! and 17).
+//!
+//! The paper's Λ ~ W(V₀, ν₀), μ ~ N(m₀, (k₀ Λ)⁻¹) is the normal-inverse-Wishart with scale Ψ₀ = V₀⁻¹.
+//! Formulas: Murphy (2007), "Conjugate Bayesian analysis of the Gaussian distribution", section 9.
+
+use std::f64::consts::PI;
+
+use nalgebra::{DMatrix, DVector};
+use rand::{Rng, RngExt};
+use rand_distr::{ChiSquared, StandardNormal};
+
+use super::augmented::Augmented;
+use super::gaussian::{Gaussian, Rounding};
+use super::points::Statistics;
+
+/// NIW(m, k, Ψ, ν): Σ ~ inverse-Wishart(Ψ, ν), μ ~ N(m, Σ / k).
+#[derive(Debug, Clone)]
+pub struct NormalInverseWishart {
+    /// Ψ + k m mᵀ, with the border k m and the corner k: to these a point x adds (x, 1)(x, 1)ᵀ.
+    moments: Augmented,
+    /// U, upper triangular, with Ψ = Uᵀ U.
+    scale: Augmented,
+    /// ν > d − 1.
+    pub freedom: f64,
+}
+
+impl NormalInverseWishart {
+    /// From m, k, Ψ and ν; `None` if Ψ is not positive definite.
+    pub fn new(mean: DVector<f64>, mean_weight: f64, scale: DMatrix<f64>, freedom: f64) -> Option<Self> {
+        let dims = mean.len();
+        debug_assert!(mean_weight > 0.0 && freedom > dims as f64 - 1.0);
+        let mean = mean.push(1.0);
+        let mut moments = Augmented::zeros(dims);
+        for i in 0..=dims {
+            for j in i..=dims {
+                let scale = if j < dims { scale[(i, j)] } else { 0.0 };
+                moments.row_mut(i)[j] = scale + mean_weight * mean[i] * mean[j];
+            }
+        }
+        Self::from_moments(moments, freedom)
+    }
+
+    fn from_moments(moments: Augmented, freedom: f64) -> Option<Self> {
+        let mut scale = moments.clone();
+        scale.eliminate_border();
+        Some(Self { moments, scale: scale.factor()?, freedom })
+    }
+
+    /// m.
+    pub fn mean(&self) -> DVector<f64> {
+        let weight = self.mean_weight();
+        DVector::from_iterator(self.moments.dims, self.moments.border().map(|b| b / weight))
+    }
+
+    /// k > 0, in observations.
+    pub fn mean_weight(&self) -> f64 {
+        self.moments.corner()
+    }
+
+    /// The posterior given points with these statistics: again normal-inverse-Wishart (Murphy, 250–254).
+    ///
+    /// # Errors
+    /// [`Rounding`] if its scale, which is positive definite, is not so in floating point.
+    pub fn posterior(&self, data: &Statistics) -> Result<Self, Rounding> {
+        let mut moments = self.moments.clone();
+        moments.add(&data.moments);
+        Self::from_moments(moments, self.freedom + data.count()).ok_or(Rounding)
+    }
+
+    /// Draws (μ, Σ).
+    ///
+    /// Λ is Wishart(Ψ⁻¹, ν) by Bartlett's decomposition: with Ψ = Uᵀ U and B upper triangular,
+    /// B_ii² ~ χ²(ν − d + i) and normal above, Λ = U⁻¹ B Bᵀ U⁻ᵀ, so that Pᵀ = U⁻¹ B is upper triangular.
+    /// μ = m + P⁻¹ z / √k with z standard normal, so that P μ = P m + z / √k.
+    pub fn draw(&self, rng: &mut impl Rng) -> Gaussian {
+        let dims = self.scale.dims;
+        let mut columns = Augmented::zeros(dims);
+        for i in 0..dims {
+            let row = columns.row_mut(i);
+            let freedom = self.freedom - dims as f64 + (i + 1) as f64;
+            let square: f64 = rng.sample(ChiSquared::new(freedom).expect("ν > d − 1"));
+            // The smallest normal number stands for an underflow to zero, which has no logarithm.
+            row[i] = square.max(f64::MIN_POSITIVE).sqrt();
+            row[i + 1..dims].fill_with(|| rng.sample(StandardNormal));
+        }
+        self.scale.solve(&mut columns);
+        let mut rows = Augmented::zeros(dims);
+        let spread = 1.0 / self.mean_weight().sqrt();
+        let mean = self.mean();
+        for i in 0..dims {
+            let row = rows.row_mut(i);
+            let mut shift = spread * rng.sample::<f64, _>(StandardNormal);
+            for j in 0..=i {
+                row[j] = columns.row(j)[i];
+                shift += row[j] * mean[j];
+            }
+            row[dims] = -shift;
+        }
+        Gaussian::from_rows(rows)
+    }
+
+    /// Log marginal likelihood of points with these statistics, μ and Σ integrated out (Murphy, 266).
+    ///
+    /// # Errors
+    /// As for [`Self::posterior`].
+    pub fn log_marginal(&self, data: &Statistics) -> Result<f64, Rounding> {
+        let posterior = self.posterior(data)?;
+        let dims = self.scale.dims as f64;
+        let weights = 0.5 * dims * (self.mean_weight() / posterior.mean_weight()).ln();
+        Ok(self.log_mass() - posterior.log_mass() - 0.5 * data.count() * dims * PI.ln() + weights)
+    }
+
+    /// (ν / 2) log |Ψ| − log Γ_d(ν / 2) up to a constant that depends on d alone.
+    fn log_mass(&self) -> f64 {
+        let log_det = 2.0 * self.scale.log_diagonal();
+        let log_gamma: f64 =
+            (0..self.scale.dims).map(|i| libm::lgamma((self.freedom - i as f64) / 2.0)).sum();
+        0.5 * self.freedom * log_det - log_gamma
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,30 @@
+//! The stages of the pipeline, in order. Each takes what the one before gives.
+//!
+//! | stage | module | in → out | paper |
+//! |---|---|---|---|
+//! | – | [`agent`] | geometry, skin → [`Agent`](agent::Agent): parts, joints, sensors, and their true tree | section 5.1, figure 4 |
+//! | 1 | [`simulate`] | agent, motion → [`Trajectory`](simulate::Trajectory): T + 1 poses of each part (m), two angles of each joint (rad) | section 5.1 |
+//! | 2 | [`sense`] | trajectory → [`Tactile`](sense::Tactile): pressures, M × T, Pa | equation 25 |
+//! | 3 | [`quantise`] | pressures → [`Symbols`](quantise::Symbols): M × T, 0 to N − 1 | section 4.1 |
+//! | 4 | [`distance`] | symbols → [`Distances`](distance::Distances): M × M, bits | equations 22 to 24 |
+//! | 5 | [`body_map`] | distances → [`BodyMap`](body_map::BodyMap): M × d, bits | section 4.1 |
+//! | 6 | [`schema`] | body map → [`Draw`](schema::Draw)s: component of each sensor, tree | equations 1 to 21 |
+//! | 7 | [`evaluate`] | draw, truth → [`Score`](evaluate::Score): adjusted Rand index, tree right or wrong | section 5.2 |
+//!
+//! Beside stage 6, [`baselines`] cluster the same body map; [`mixture`] holds what both build on, [`tree`] the trees.
+//! M is the number of sensors, T the number of samples, N the number of levels, d the number of dimensions.
+//!
+//! No stage reads or writes a file, or prints. Random numbers come from an argument. Long stages call a `tick`
+//! function as they go on.
+
+pub mod agent;
+pub mod baselines;
+pub mod body_map;
+pub mod distance;
+pub mod evaluate;
+pub mod mixture;
+pub mod quantise;
+pub mod schema;
+pub mod sense;
+pub mod simulate;
+pub mod tree;

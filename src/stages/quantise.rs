@@ -1,0 +1,200 @@
+//! Stage 3. Tactile pressures → symbols (section 4.1: "integer values between 1 and N", here 0 to N − 1).
+//!
+//! The paper leaves the levels open. Pressures are heavy-tailed, so that levels of equal width put nearly
+//! every sample into one; the default has a level for no pressure and shares the positive pressures
+//! equally among the others. A level is a function of the value alone: equal values never split.
+
+use rayon::prelude::*;
+
+use serde::{Deserialize, Serialize};
+
+use crate::numerics::range::{Checked, check};
+use crate::stages::sense::Tactile;
+
+/// How pressures become levels.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Scheme {
+    /// Level 0 is no pressure; the others hold equally many of that sensor's positive pressures.
+    PerSensor,
+    /// The same with one set of thresholds for all sensors.
+    Pooled,
+    /// Levels of equal width between the smallest and the largest pressure of all sensors.
+    EqualWidth,
+}
+
+/// Quantisation (section 4.1).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Quantise {
+    /// How levels are placed.
+    pub scheme: Scheme,
+    /// N, number of levels, 2 to 256.
+    pub levels: usize,
+}
+
+impl Quantise {
+    /// Checks the range of each setting.
+    ///
+    /// # Errors
+    /// The first setting that is outside its range.
+    pub fn check(&self) -> Checked {
+        check("quantise.levels", self.levels, (2..=256).contains(&self.levels), "2 to 256")
+    }
+}
+
+/// Quantised tactile information a_{i,t} of M sensors at T times.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Symbols {
+    /// T.
+    pub samples: usize,
+    /// Number of symbols; each is below it.
+    pub levels: usize,
+    /// M × T: the whole series of one sensor after that of another.
+    pub values: Vec<u8>,
+}
+
+impl Symbols {
+    /// M.
+    pub fn sensors(&self) -> usize {
+        self.values.len() / self.samples
+    }
+
+    /// The series of each sensor.
+    pub fn series(&self) -> std::slice::ChunksExact<'_, u8> {
+        self.values.chunks_exact(self.samples)
+    }
+
+    /// Sensors that show one symbol throughout, and so tell nothing.
+    pub fn constant_sensors(&self) -> Vec<usize> {
+        let constant = |series: &[u8]| series.iter().all(|symbol| *symbol == series[0]);
+        self.series().enumerate().filter(|(_, series)| constant(series)).map(|(sensor, _)| sensor).collect()
+    }
+}
+
+/// Turns pressures into levels.
+///
+/// `settings.levels` counts the level for no pressure. A sensor with fewer distinct positive values than
+/// levels leaves some of them empty.
+pub fn quantise(tactile: &Tactile, settings: &Quantise) -> Symbols {
+    let levels = settings.levels;
+    let common = match settings.scheme {
+        Scheme::PerSensor => None,
+        Scheme::Pooled => Some(equal_frequency(&tactile.pressures, levels)),
+        Scheme::EqualWidth => Some(equal_width(&tactile.pressures, levels)),
+    };
+    let mut values = vec![0; tactile.pressures.len()];
+    values
+        .par_chunks_exact_mut(tactile.samples)
+        .zip(tactile.pressures.par_chunks_exact(tactile.samples))
+        .for_each(|(symbols, pressures)| {
+            let own;
+            let thresholds = match &common {
+                Some(thresholds) => thresholds,
+                None => {
+                    own = equal_frequency(pressures, levels);
+                    &own
+                }
+            };
+            for (symbol, pressure) in symbols.iter_mut().zip(pressures) {
+                *symbol = thresholds.iter().filter(|threshold| pressure > *threshold).count() as u8;
+            }
+        });
+    Symbols { samples: tactile.samples, levels, values }
+}
+
+/// Upper bounds of all levels but the last: 0 for no pressure, then the quantiles of the positive values.
+fn equal_frequency(pressures: &[f32], levels: usize) -> Vec<f32> {
+    let mut positive: Vec<f32> = pressures.iter().copied().filter(|pressure| *pressure > 0.0).collect();
+    let mut thresholds = vec![0.0];
+    // Selected, not sorted: each quantile is sought among the values above the one before.
+    let mut below = 0;
+    for level in 1..levels - 1 {
+        // The last of the lowest `level` of `levels - 1` shares.
+        let rank = (positive.len() * level).div_ceil(levels - 1);
+        let Some(last) = rank.checked_sub(1) else { continue };
+        if last >= below {
+            positive[below..].select_nth_unstable_by(last - below, f32::total_cmp);
+            below = last + 1;
+        }
+        thresholds.push(positive[last]);
+    }
+    thresholds
+}
+
+/// Upper bounds of all levels but the last, evenly spaced over the range of the values.
+fn equal_width(pressures: &[f32], levels: usize) -> Vec<f32> {
+    let low = pressures.iter().copied().fold(f32::INFINITY, f32::min);
+    let high = pressures.iter().copied().fold(f32::NEG_INFINITY, f32::max);
+    (1..levels).map(|level| low + (high - low) * (level as f32 / levels as f32)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::RngExt;
+
+    use super::*;
+    use crate::numerics::rng::stream;
+
+    fn symbols(pressures: &[f32], sensors: usize, scheme: Scheme, levels: usize) -> Vec<u8> {
+        let tactile = Tactile { samples: pressures.len() / sensors, pressures: pressures.to_vec() };
+        quantise(&tactile, &Quantise { scheme, levels }).values
+    }
+
+    #[test]
+    fn positive_values_are_shared_equally() {
+        let pressures = [0.0, 5.0, 1.0, 0.0, 6.0, 2.0, 4.0, 3.0];
+        assert_eq!(symbols(&pressures, 1, Scheme::PerSensor, 4), [0, 3, 1, 0, 3, 1, 2, 2]);
+    }
+
+    #[test]
+    fn thresholds_are_quantiles_of_the_sorted_values() {
+        let mut rng = stream(1, 1, "pressures", 0);
+        for (count, levels) in [(0, 4), (1, 4), (2, 4), (3, 9), (40, 256), (1000, 2), (1000, 3), (1001, 8)] {
+            let pressures: Vec<f32> = (0..count).map(|_| rng.random_range(-2..40) as f32 / 4.0).collect();
+            let mut sorted: Vec<f32> = pressures.iter().copied().filter(|pressure| *pressure > 0.0).collect();
+            sorted.sort_by(f32::total_cmp);
+            let rank = |level: usize| (sorted.len() * level).div_ceil(levels - 1);
+            let quantiles =
+                (1..levels - 1).filter(|&level| rank(level) > 0).map(|level| sorted[rank(level) - 1]);
+            let expected: Vec<f32> = std::iter::once(0.0).chain(quantiles).collect();
+            assert_eq!(equal_frequency(&pressures, levels), expected, "{count} values, {levels} levels");
+        }
+    }
+
+    #[test]
+    fn equal_values_stay_together_however_many_they_are() {
+        let pressures = [2.0, 2.0, 2.0, 2.0, 2.0, 9.0];
+        assert_eq!(symbols(&pressures, 1, Scheme::PerSensor, 4), [1, 1, 1, 1, 1, 3]);
+    }
+
+    #[test]
+    fn pooled_thresholds_are_common_to_all_sensors() {
+        let pressures = [1.0, 2.0, 3.0, 10.0, 20.0, 30.0];
+        assert_eq!(symbols(&pressures, 2, Scheme::PerSensor, 4), [1, 2, 3, 1, 2, 3]);
+        assert_eq!(symbols(&pressures, 2, Scheme::Pooled, 4), [1, 1, 2, 2, 3, 3]);
+    }
+
+    #[test]
+    fn levels_of_equal_width_span_the_range() {
+        assert_eq!(symbols(&[0.0, 1.0, 2.5, 5.0, 7.6, 10.0], 1, Scheme::EqualWidth, 4), [0, 0, 0, 1, 3, 3]);
+    }
+
+    #[test]
+    fn a_constant_sensor_is_reported() {
+        let tactile = Tactile { samples: 3, pressures: vec![0.0, 0.0, 0.0, 1.0, 2.0, 3.0, 7.0, 7.0, 7.0] };
+        let symbols = quantise(&tactile, &Quantise { scheme: Scheme::PerSensor, levels: 3 });
+        assert_eq!(symbols.constant_sensors(), [0, 2]);
+    }
+
+    #[test]
+    fn heavy_tails_fill_equal_frequency_levels_and_not_those_of_equal_width() {
+        let pressures: Vec<f32> = (1..=1000).map(|i| (1000.0 / i as f32).powi(3)).collect();
+        let share_of_largest = |scheme| {
+            let symbols = symbols(&pressures, 1, scheme, 4);
+            (0..4).map(|level| symbols.iter().filter(|&&s| s == level).count()).max().unwrap()
+        };
+        assert!(share_of_largest(Scheme::PerSensor) <= 334);
+        assert!(share_of_largest(Scheme::EqualWidth) >= 990);
+    }
+}

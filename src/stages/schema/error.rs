@@ -1,0 +1,66 @@
+//! Say why a body schema cannot be inferred, before it takes more memory than there is.
+
+use crate::stages::mixture::Rounding as RoundingError;
+
+/// Most numbers in the matrices of all components together, of which a chain holds a few: 80 MB each.
+const MOST_NUMBERS: usize = 10_000_000;
+
+/// Most labels in all draws that are kept, 8 GB.
+pub const MOST_LABELS: usize = 1_000_000_000;
+
+/// Whether the matrices of so many components in so many dimensions fit the memory.
+pub fn fits(components: usize, dims: usize) -> bool {
+    dims.saturating_mul(dims).saturating_mul(components) <= MOST_NUMBERS
+}
+
+/// A body map that the mixture cannot be sampled on.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum InferenceError {
+    /// Matrices beyond any memory.
+    #[error(
+        "schema.components = {components} in {dims} dimensions take matrices of more than 10 million numbers; use fewer \
+         of either"
+    )]
+    TooManyNumbers {
+        /// K.
+        components: usize,
+        /// d.
+        dims: usize,
+    },
+    /// Results beyond any memory.
+    #[error(
+        "{draws} draws of {points} points are more than 1 billion labels; keep fewer (schema.chains, schema.sweeps, \
+         schema.keep)"
+    )]
+    TooManyLabels {
+        /// Draws that are kept.
+        draws: usize,
+        /// n.
+        points: usize,
+    },
+    /// A matrix that is positive definite but for rounding.
+    #[error(
+        "a component is so flat that rounding leaves nothing of it; raise schema.scale, schema.extra_freedom or \
+         schema.mean_weight, or use fewer dimensions"
+    )]
+    Rounding,
+    /// Numbers so large or small that their products are none.
+    #[error("the points spread over {0:e}, which is beyond what can be computed with; rescale them")]
+    Scale(f64),
+    /// The points span fewer than d dimensions.
+    #[error(
+        "the {points} points span fewer than {dims} dimensions, so the prior has no scale there; use fewer dimensions"
+    )]
+    Flat {
+        /// n.
+        points: usize,
+        /// d.
+        dims: usize,
+    },
+}
+
+impl From<RoundingError> for InferenceError {
+    fn from(RoundingError: RoundingError) -> Self {
+        Self::Rounding
+    }
+}

@@ -1,0 +1,71 @@
+//! Run independent chains on a body map and keep their draws (section 3).
+
+use rayon::prelude::*;
+
+use super::draw::Draw;
+use super::error::{InferenceError, MOST_LABELS, fits};
+use super::gibbs::Chain;
+use super::prior::fraley_raftery;
+use super::settings::{Keep, Model, Schema};
+use crate::numerics::rng::stream;
+use crate::stages::body_map::BodyMap;
+use crate::stages::mixture::Points;
+
+/// Runs `settings.chains` independent chains and returns the draws that are kept, by chain and sweep.
+///
+/// Chain c of a map in d dimensions has the stream (seed, simulation, "model d", c). `progress` advances
+/// by one for each chain.
+///
+/// # Errors
+/// [`InferenceError`] if the map spans fewer dimensions than it has columns, or is more than can be computed with.
+pub fn infer(
+    map: &BodyMap,
+    model: Model,
+    settings: &Schema,
+    seed: u64,
+    simulation: usize,
+    tick: &(dyn Fn() + Sync),
+) -> Result<Vec<Draw>, InferenceError> {
+    let (components, dims, draws, count) = (settings.components, map.dims, settings.draws(), map.points());
+    // Before anything of that size is made; n points span n − 1 dimensions.
+    if count <= dims {
+        return Err(InferenceError::Flat { points: count, dims });
+    }
+    if !fits(components, dims) {
+        return Err(InferenceError::TooManyNumbers { components, dims });
+    }
+    if draws.saturating_mul(count) > MOST_LABELS {
+        return Err(InferenceError::TooManyLabels { draws, points: count });
+    }
+    let points = Points::new(map);
+    let prior = fraley_raftery(&points, settings)?;
+    let stage = format!("{} {}", model.name(), map.dims);
+    let chains: Result<Vec<Vec<Draw>>, InferenceError> = (0..settings.chains)
+        .into_par_iter()
+        .map(|chain| {
+            let mut rng = stream(seed, simulation, &stage, chain);
+            let mut state = Chain::start(&points, &prior, settings, model, &mut rng)?;
+            let mut draws = Vec::new();
+            for sweep in 1..=settings.sweeps {
+                state.sweep(&mut rng)?;
+                let keep = match settings.keep {
+                    Keep::Last => sweep == settings.sweeps,
+                    Keep::All => sweep > settings.burn_in,
+                };
+                if keep {
+                    draws.push(Draw {
+                        chain,
+                        sweep,
+                        labels: state.labels.clone(),
+                        tree: state.tree(),
+                        joints: state.joints.iter().map(|joint| points.uncentred(&joint.position)).collect(),
+                        log_posterior: Some(state.log_posterior()?),
+                    });
+                }
+            }
+            tick();
+            Ok(draws)
+        })
+        .collect();
+    Ok(chains?.into_iter().flatten().collect())
+}

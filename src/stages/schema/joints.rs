@@ -1,0 +1,87 @@
+//! Two Gaussian components → a latent joint between them, and the weight of that edge (equations 12, 13,
+//! 18 and 21).
+//!
+//! A joint q is a point that both components generate, so it is drawn from the product of their
+//! densities, and it is data of both when they are updated.
+
+use nalgebra::{DMatrix, DVector};
+use rand::{Rng, RngExt};
+use rand_distr::StandardNormal;
+
+use crate::stages::mixture::{Augmented, Gaussian, Rounding};
+
+/// Draws q from the normalised product N(q; μ_s, Σ_s) N(q; μ_c, Σ_c) (equation 18), a Gaussian with
+/// precision Λ_s + Λ_c, given the [information](Gaussian::information) of both.
+///
+/// With Λ_s + Λ_c = Uᵀ U its mean is U⁻¹ U⁻ᵀ (Λ_s μ_s + Λ_c μ_c).
+///
+/// # Errors
+/// [`Rounding`] if the sum is not positive definite in floating point.
+pub fn draw_between(s: &Augmented, c: &Augmented, rng: &mut impl Rng) -> Result<DVector<f64>, Rounding> {
+    let mut sum = s.clone();
+    sum.add(c);
+    let factor = sum.factor().ok_or(Rounding)?;
+    let whitened = factor.border().map(|border| rng.sample::<f64, _>(StandardNormal) - border);
+    let mut q = DVector::from_iterator(factor.dims, whitened);
+    factor.solve_vector(q.as_mut_slice());
+    Ok(q)
+}
+
+/// −log (N(q; μ_s, Σ_s) N(q; μ_c, Σ_c)), the quadratic cost of equation 21.
+pub fn cost(q: &DVector<f64>, s: &Gaussian, c: &Gaussian) -> f64 {
+    -s.log_density(q.as_slice()) - c.log_density(q.as_slice())
+}
+
+/// The same with the joint integrated out: −log N(μ_s; μ_c, Σ_s + Σ_c).
+///
+/// # Errors
+/// [`Rounding`] if the sum is not positive definite in floating point.
+pub fn collapsed_cost(s: &Gaussian, c: &Gaussian) -> Result<f64, Rounding> {
+    let covariance: DMatrix<f64> = s.covariance() + c.covariance();
+    let factor = covariance.cholesky().ok_or(Rounding)?;
+    let offset = s.mean() - c.mean();
+    let whitened = factor.l_dirty().solve_lower_triangular(&offset).expect("its diagonal is positive");
+    let log_det = 2.0 * factor.l_dirty().diagonal().iter().map(|x| x.ln()).sum::<f64>();
+    Ok(0.5 * (whitened.norm_squared() + log_det + offset.len() as f64 * (2.0 * std::f64::consts::PI).ln()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::numerics::rng::stream;
+    use crate::numerics::testing::{ALPHA, ks_one_sample};
+
+    /// N(mean, deviation²) in one dimension.
+    fn scalar_gaussian(mean: f64, deviation: f64) -> Gaussian {
+        Gaussian::new(DVector::from_element(1, mean), DMatrix::from_element(1, 1, 1.0 / deviation))
+    }
+
+    /// Integral over the real line of N(q; s) N(q; c) from −∞ to `end`, by the midpoint rule.
+    fn product_mass(s: &Gaussian, c: &Gaussian, end: f64) -> f64 {
+        const STEP: f64 = 1e-3;
+        let density = |q: f64| (-cost(&DVector::from_element(1, q), s, c)).exp();
+        let steps = ((end + 10.0) / STEP) as usize;
+        (0..steps).map(|i| density(-10.0 + (i as f64 + 0.5) * STEP) * STEP).sum()
+    }
+
+    #[test]
+    fn a_joint_follows_the_product_of_both_densities_and_not_one_alone() {
+        let (s, c) = (scalar_gaussian(1.0, 0.5), scalar_gaussian(-0.4, 1.2));
+        let mut rng = stream(1, 1, "joint", 0);
+        let draws: Vec<f64> = (0..4000)
+            .map(|_| draw_between(&s.information(), &c.information(), &mut rng).unwrap()[0])
+            .collect();
+        let total = product_mass(&s, &c, 10.0);
+        assert!(ks_one_sample(&draws, |q| product_mass(&s, &c, q) / total) > ALPHA);
+        // The broken twin forgets the parent.
+        let alone: Vec<f64> = (0..4000).map(|_| s.draw(&mut rng)[0]).collect();
+        assert!(ks_one_sample(&alone, |q| product_mass(&s, &c, q) / total) < ALPHA);
+    }
+
+    #[test]
+    fn the_collapsed_cost_is_the_integral_over_the_joint() {
+        let (s, c) = (scalar_gaussian(1.0, 0.5), scalar_gaussian(-0.4, 1.2));
+        let integral = product_mass(&s, &c, 10.0);
+        assert!((collapsed_cost(&s, &c).unwrap() + integral.ln()).abs() < 1e-9);
+    }
+}

@@ -1,0 +1,20 @@
+//! Stage 6, `infer`: draws of the body schema by the DPGMM-LJ or the DPGMM (section 3).
+//!
+//! In: a [`BodyMap`](super::body_map::BodyMap), M × d, and the settings [`Schema`]. Out: [`Draw`]s, each with the
+//! component of every sensor and the tree over the components.
+
+mod draw;
+mod error;
+mod gibbs;
+mod infer;
+mod joints;
+mod prior;
+mod settings;
+
+pub use self::draw::{Draw, best, one_part};
+pub use self::error::{InferenceError, fits};
+pub use self::gibbs::{Chain, Joint};
+pub use self::infer::infer;
+pub use self::joints::collapsed_cost;
+pub use self::prior::fraley_raftery;
+pub use self::settings::{EdgeWeight, Keep, Model, Schema, Start};

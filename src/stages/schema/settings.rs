@@ -1,0 +1,128 @@
+//! Settings of the mixtures and their sampler, `[schema]`.
+
+use serde::{Deserialize, Serialize};
+
+use super::error::MOST_LABELS;
+use crate::numerics::range::{Checked, check, count, moderate};
+
+/// The mixture to sample from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Model {
+    /// Dirichlet-process Gaussian mixture model; its tree is found afterwards by Prim's algorithm.
+    Dpgmm,
+    /// The same with latent joints.
+    DpgmmLj,
+}
+
+impl Model {
+    /// Both, the baseline first.
+    pub const ALL: [Self; 2] = [Self::Dpgmm, Self::DpgmmLj];
+
+    /// Name on the command line and in every file.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Dpgmm => "dpgmm",
+            Self::DpgmmLj => "dpgmm-lj",
+        }
+    }
+}
+
+/// The weight of an edge in the update of the tree (equation 21).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum EdgeWeight {
+    /// Each child keeps the joint q_s it has, whichever parent is weighed.
+    Literal,
+    /// A joint is drawn for each pair of active components, and weighs that pair.
+    Pairwise,
+    /// The joint is integrated out: −log N(μ_s; μ_c, Σ_s + Σ_c).
+    Collapsed,
+}
+
+/// The labels that a chain starts with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Start {
+    /// Uniform over the K components.
+    Uniform,
+    /// The K clusters of k-means from one random start.
+    KMeans,
+    /// All points in one component.
+    Single,
+}
+
+/// Which draws of a chain are kept.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Keep {
+    /// The last one.
+    Last,
+    /// Every one after burn-in.
+    All,
+}
+
+/// The mixture, its prior and its sampler (section 3).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Schema {
+    /// K, truncation of the weak limit.
+    pub components: usize,
+    /// γ of Dir(γ/K).
+    pub concentration: f64,
+    /// k₀, weight of the prior mean, in observations.
+    pub mean_weight: f64,
+    /// ν₀ − d, where ν₀ > d − 1 are the degrees of freedom of the inverse Wishart.
+    pub extra_freedom: f64,
+    /// Multiplies the prior scale Ψ₀ = covariance(x) / K^(2/d) of Fraley & Raftery (2007).
+    pub scale: f64,
+    /// Weight of the tree's edges.
+    pub edge_weight: EdgeWeight,
+    /// The labels that a chain starts with.
+    pub start: Start,
+    /// Gibbs sweeps of each chain.
+    pub sweeps: usize,
+    /// Independent chains.
+    pub chains: usize,
+    /// Which draws are kept.
+    pub keep: Keep,
+    /// Sweeps dropped where every draw is kept.
+    pub burn_in: usize,
+}
+
+impl Schema {
+    /// Number of draws that are kept.
+    pub fn draws(&self) -> usize {
+        match self.keep {
+            Keep::Last => self.chains,
+            Keep::All => self.chains.saturating_mul(self.sweeps.saturating_sub(self.burn_in)),
+        }
+    }
+
+    /// Checks the range of each setting, and that the draws of `sensors` sensors are not too many to keep.
+    ///
+    /// # Errors
+    /// The first setting that is outside its range.
+    pub fn check(&self, sensors: usize) -> Checked {
+        check("schema.components", self.components, (1..=1000).contains(&self.components), "1 to 1000")?;
+        moderate("schema.concentration", self.concentration)?;
+        moderate("schema.mean_weight", self.mean_weight)?;
+        let freedom = self.extra_freedom;
+        check("schema.extra_freedom", freedom, (-0.99..=1e6).contains(&freedom), "-0.99 to 1000000")?;
+        moderate("schema.scale", self.scale)?;
+        count("schema.sweeps", self.sweeps)?;
+        check("schema.chains", self.chains, (1..=1_000_000).contains(&self.chains), "1 to 1000000")?;
+        let sweeps = self.chains.saturating_mul(self.sweeps);
+        check("schema.chains * schema.sweeps", sweeps, sweeps <= 1_000_000_000, "at most 1000000000")?;
+        if self.keep == Keep::All {
+            check("schema.burn_in", self.burn_in, self.burn_in < self.sweeps, "below schema.sweeps")?;
+        }
+        let draws = self.draws();
+        check(
+            "schema.chains * (schema.sweeps - schema.burn_in)",
+            draws,
+            draws <= 1_000_000 && draws * sensors <= MOST_LABELS,
+            "at most 1000000 draws where all are kept, and at most 1000000000 labels with all sensors",
+        )
+    }
+}

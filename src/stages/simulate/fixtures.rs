@@ -1,0 +1,43 @@
+//! A small body and its movement, for the tests of this stage.
+
+use super::settings::{AngleError, Motion, Physics, Targets};
+use crate::stages::agent::{Agent, Geometry, Morphology, Skin};
+
+/// Everything that a simulation needs.
+pub struct Scene {
+    pub geometry: Geometry,
+    pub motion: Motion,
+    pub physics: Physics,
+}
+
+/// Time between two samples, s.
+pub const INTERVAL: f64 = 0.1;
+
+impl Scene {
+    /// Five short thick parts in a row, moved by strong gains.
+    pub fn new() -> Self {
+        Self {
+            geometry: Geometry {
+                morphology: Morphology::Chain,
+                part_length: 0.3,
+                part_radius: 0.05,
+                gap: 0.0,
+                density: 1000.0,
+            },
+            motion: Motion {
+                coordination: 0.9,
+                epoch: 500,
+                targets: Targets::Each,
+                stiffness: 1.1,
+                damping: 0.5,
+                error: AngleError::Shortest,
+            },
+            physics: Physics { step: 0.01, duration: 200.0, turn_limit: 1e6 },
+        }
+    }
+
+    /// The body, with few sensors.
+    pub fn agent(&self) -> Agent {
+        Agent::new(&self.geometry, &Skin { around: 4, along: 1, caps: 0 })
+    }
+}

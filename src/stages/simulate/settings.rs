@@ -1,0 +1,92 @@
+//! Settings of the movement, `[motion]`, and of the physics engine, `[physics]`.
+
+use serde::{Deserialize, Serialize};
+
+use crate::numerics::range::{Checked, check, count, gain, moderate, positive};
+
+/// What the controller takes as the distance to the target.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum AngleError {
+    /// target − angle, with the angle in [−π, π] as ODE reports it.
+    Raw,
+    /// The same wrapped to [−π, π]: the shorter way round.
+    Shortest,
+}
+
+/// Where a joint that moves goes to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Targets {
+    /// Each of a universal joint's two axes draws a target of its own.
+    Each,
+    /// Both axes of a joint share one target.
+    Shared,
+}
+
+/// Coordinated random movement and its controller (section 5.1).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Motion {
+    /// p, ratio of motor coordination: the probability that a joint stays locked for an epoch, in [0, 1].
+    pub coordination: f64,
+    /// Physics steps between two draws.
+    pub epoch: usize,
+    /// Where a joint that moves goes to.
+    pub targets: Targets,
+    /// k_p, N·m/rad. Higher is faster, and less stable at a given step.
+    pub stiffness: f64,
+    /// k_d, N·m·s/rad. Times the step over the part's axial inertia it must stay below about 1.
+    pub damping: f64,
+    /// What the controller takes as the distance to the target.
+    pub error: AngleError,
+}
+
+impl Motion {
+    /// Checks the range of each setting.
+    ///
+    /// # Errors
+    /// The first setting that is outside its range.
+    pub fn check(&self) -> Checked {
+        let p = self.coordination;
+        check("motion.coordination", p, (0.0..=1.0).contains(&p), "a probability, 0 to 1")?;
+        count("motion.epoch", self.epoch)?;
+        gain("motion.stiffness", self.stiffness)?;
+        gain("motion.damping", self.damping)
+    }
+}
+
+/// Time in the physics engine, s.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Physics {
+    /// One step, s.
+    pub step: f64,
+    /// Simulated time, s.
+    pub duration: f64,
+    /// Turns a part may make in a step; beyond, the simulation counts as unstable.
+    pub turn_limit: f64,
+}
+
+impl Physics {
+    /// Steps of the physics engine between two samples that are `interval` s apart.
+    pub fn steps_per_sample(&self, interval: f64) -> usize {
+        (interval / self.step).round() as usize
+    }
+
+    /// T, the number of samples that are `interval` s apart.
+    pub fn samples(&self, interval: f64) -> usize {
+        (self.duration / interval + 1e-6).floor() as usize
+    }
+
+    /// Checks the range of each setting.
+    ///
+    /// # Errors
+    /// The first setting that is outside its range.
+    pub fn check(&self) -> Checked {
+        moderate("physics.step", self.step)?;
+        positive("physics.duration", self.duration)?;
+        let turns = self.turn_limit;
+        check("physics.turn_limit", turns, (0.001..=1e6).contains(&turns), "0.001 to 1000000")
+    }
+}

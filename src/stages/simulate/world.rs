@@ -1,0 +1,293 @@
+//! The agent in Open Dynamics Engine: the only file with `unsafe` code. Wraps what the agent needs.
+//!
+//! ODE's assertions end the process, so everything handed to it is checked before, and the state of every
+//! body after each step. Each world has its own step threading, because two worlds that share ODE's
+//! default one abort when they step at the same time.
+
+use std::f64::consts::TAU;
+use std::ffi::CStr;
+use std::mem::MaybeUninit;
+use std::ptr::null_mut;
+use std::sync::Once;
+
+use ode_sys as ode;
+
+use super::settings::Physics;
+use crate::stages::agent::{Agent, Joint, Part, Vector3};
+
+/// Where a part is and how it is turned.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pose {
+    /// Centre of mass, m.
+    pub position: Vector3,
+    /// Rotation matrix from the part's frame to the world's, by rows.
+    pub rotation: [Vector3; 3],
+}
+
+impl Pose {
+    /// Where in the world a point of the part is, given in the part's frame, m.
+    pub fn place(&self, point: Vector3) -> Vector3 {
+        [0, 1, 2]
+            .map(|i| self.position[i] + self.rotation[i].iter().zip(point).map(|(r, x)| r * x).sum::<f64>())
+    }
+}
+
+/// A body whose motion cannot be followed with the present settings.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error(
+    "{event} at step {step} (t = {time:.3} s): the simulation has become unstable; lower motion.stiffness, \
+     motion.damping or physics.step, or enlarge agent.part_radius"
+)]
+pub struct Unstable {
+    /// What was seen.
+    pub event: String,
+    /// Physics steps taken.
+    pub step: u64,
+    /// Simulated time, s.
+    pub time: f64,
+}
+
+/// A world with one agent, at rest at first, with all joints locked.
+pub struct World {
+    world: ode::dWorldID,
+    threading: ode::dThreadingImplementationID,
+    bodies: Vec<ode::dBodyID>,
+    joints: Vec<ode::dJointID>,
+    step: f64,
+    steps: u64,
+    /// Fastest rotation that is not called unstable, rad/s.
+    fastest: f64,
+    /// Whether the engine gave up in a step, after which the world may not be touched.
+    failed: bool,
+}
+
+/// Version (as built against), and configuration tokens (as linked) of ODE.
+pub fn engine() -> (&'static str, String) {
+    initialise();
+    // SAFETY: ODE is initialised and returns a static, terminated string.
+    let configuration = unsafe { CStr::from_ptr(ode::dGetConfiguration()) };
+    (env!("BODYSCHEMA_ODE_VERSION"), configuration.to_string_lossy().trim().to_owned())
+}
+
+/// ODE wants one initialisation a process and one a thread.
+fn initialise() {
+    static ONCE: Once = Once::new();
+    // SAFETY: `Once` runs these calls alone and before any other.
+    ONCE.call_once(|| unsafe {
+        assert_ne!(ode::dInitODE2(0), 0, "ODE cannot be initialised");
+        ode::ode_shim_install_handlers();
+        assert_eq!(
+            ode::dCheckConfiguration(c"ODE_double_precision".as_ptr()),
+            1,
+            "the installed libode is not double precision"
+        );
+    });
+    // SAFETY: ODE is initialised; this is its documented call for each thread, and may be repeated.
+    let allocated = unsafe { ode::dAllocateODEDataForThread(ode::dAllocateMaskAll as u32) };
+    assert_ne!(allocated, 0, "ODE cannot allocate its data for this thread");
+}
+
+/// What ODE last said in this thread.
+fn last_message() -> String {
+    let mut buffer = [0_u8; 512];
+    // SAFETY: the shim writes at most as many bytes as it is told, and terminates them.
+    let length = unsafe { ode::ode_shim_take_message(buffer.as_mut_ptr().cast(), buffer.len() as _) };
+    String::from_utf8_lossy(&buffer[..length as usize]).into_owned()
+}
+
+/// Makes the body of a part, at rest in its rest pose.
+///
+/// # Safety
+/// The world must be live.
+unsafe fn make_body(world: ode::dWorldID, part: &Part) -> ode::dBodyID {
+    const ALONG_Z: i32 = 3;
+    let mut mass = MaybeUninit::<ode::dMass>::uninit();
+    let mut rotation: ode::dMatrix3 = [0.0; 12];
+    // SAFETY: as the caller promises; the mass is written by dMassSetCylinder before it is read, and positive, as
+    // the ranges of lengths and density make it.
+    unsafe {
+        ode::dMassSetCylinder(mass.as_mut_ptr(), part.density, ALONG_Z, part.radius, part.length);
+        let mass = mass.assume_init();
+        let body = ode::dBodyCreate(world);
+        ode::dRFromZAxis(rotation.as_mut_ptr(), part.axis[0], part.axis[1], part.axis[2]);
+        ode::dBodySetMass(body, &mass);
+        ode::dBodySetRotation(body, rotation.as_ptr());
+        ode::dBodySetPosition(body, part.centre[0], part.centre[1], part.centre[2]);
+        body
+    }
+}
+
+/// Makes a universal joint between two bodies, in the pose that they have.
+///
+/// # Safety
+/// The world and its bodies must be live, and there must be one for each part of the joint.
+unsafe fn make_joint(world: ode::dWorldID, bodies: &[ode::dBodyID], joint: &Joint) -> ode::dJointID {
+    let [anchor, first, second] = [joint.anchor, joint.axes[0], joint.axes[1]];
+    let third = [1, 2, 0].map(|i| {
+        let j = (i + 1) % 3;
+        first[i] * second[j] - first[j] * second[i]
+    });
+    // SAFETY: as the caller promises. Attach first: ODE ignores the anchor and axes of a joint without
+    // bodies. The third direction is for a moment only: whenever an axis is set, ODE relates it to the other, and
+    // reads what it never wrote if that is parallel, as the one it begins with is to the first.
+    unsafe {
+        let id = ode::dJointCreateUniversal(world, null_mut());
+        ode::dJointAttach(id, bodies[joint.parent], bodies[joint.child]);
+        ode::dJointSetUniversalAnchor(id, anchor[0], anchor[1], anchor[2]);
+        ode::dJointSetUniversalAxis1(id, third[0], third[1], third[2]);
+        ode::dJointSetUniversalAxis2(id, second[0], second[1], second[2]);
+        ode::dJointSetUniversalAxis1(id, first[0], first[1], first[2]);
+        id
+    }
+}
+
+impl World {
+    /// Puts `agent` into a fresh world with ODE's default parameters.
+    ///
+    /// Lengths, densities and the step must be in the ranges that [`crate::stages::agent::Geometry::check`] and
+    /// [`Physics::check`] state: that keeps out of ODE what it would abort on.
+    pub fn new(agent: &Agent, physics: &Physics) -> Self {
+        initialise();
+        // SAFETY: handles are used only while `self` owns them.
+        unsafe {
+            let world = ode::dWorldCreate();
+            let threading = ode::dThreadingAllocateSelfThreadedImplementation();
+            ode::dWorldSetStepThreadingImplementation(
+                world,
+                ode::dThreadingImplementationGetFunctions(threading),
+                threading,
+            );
+
+            let bodies: Vec<_> = agent.parts.iter().map(|part| make_body(world, part)).collect();
+            let joints: Vec<_> = agent.joints.iter().map(|joint| make_joint(world, &bodies, joint)).collect();
+            let mut world = Self {
+                world,
+                threading,
+                bodies,
+                joints,
+                step: physics.step,
+                steps: 0,
+                fastest: physics.turn_limit * TAU / physics.step,
+                failed: false,
+            };
+            for joint in 0..world.joints.len() {
+                world.lock(joint);
+            }
+            world
+        }
+    }
+
+    /// Advances the world by one step.
+    ///
+    /// # Errors
+    /// [`Unstable`] if a part turns by more than `physics.turn_limit` in a step, leaves the range of numbers, or makes
+    /// the engine give up. The world is then of no more use.
+    pub fn step(&mut self) -> Result<(), Unstable> {
+        self.steps += 1;
+        let unstable =
+            |event: String| Unstable { event, step: self.steps, time: self.steps as f64 * self.step };
+        // SAFETY: the world is live and has not failed before, its step is positive, and its state was
+        // found finite after the last one.
+        if unsafe { ode::ode_shim_world_step(self.world, self.step) } != 0 {
+            self.failed = true;
+            return Err(unstable(format!("the physics engine gave up ({})", last_message())));
+        }
+        for part in 0..self.bodies.len() {
+            let (linear, angular) = self.velocity(part);
+            // No real motion of such bodies comes near a kilometre a second.
+            for (velocity, limit, unit) in [(angular, self.fastest, "rad/s"), (linear, 1e3, "m/s")] {
+                let squared: f64 = velocity.iter().map(|x| x * x).sum();
+                if squared.is_nan() || squared >= limit * limit {
+                    return Err(unstable(format!("part {part} reached {:.3e} {unit}", squared.sqrt())));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Linear (m/s) and angular (rad/s) velocity of a part, in the world's frame.
+    pub fn velocity(&self, part: usize) -> (Vector3, Vector3) {
+        // SAFETY: both pointers lead to three numbers of a live body, and are read at once.
+        unsafe {
+            (
+                *ode::dBodyGetLinearVel(self.bodies[part]).cast::<Vector3>(),
+                *ode::dBodyGetAngularVel(self.bodies[part]).cast::<Vector3>(),
+            )
+        }
+    }
+
+    /// Position and rotation of a part.
+    pub fn pose(&self, part: usize) -> Pose {
+        // SAFETY: ODE keeps three numbers of position and three rows of four of rotation for a live body.
+        let (position, rows) = unsafe {
+            (
+                *ode::dBodyGetPosition(self.bodies[part]).cast::<Vector3>(),
+                *ode::dBodyGetRotation(self.bodies[part]).cast::<[[f64; 4]; 3]>(),
+            )
+        };
+        Pose { position, rotation: rows.map(|[x, y, z, _]| [x, y, z]) }
+    }
+
+    /// Both angles of a joint, rad in [−π, π]: the parent relative to the child, 0 in the rest pose.
+    pub fn angles(&self, joint: usize) -> [f64; 2] {
+        let (mut first, mut second) = (0.0, 0.0);
+        // SAFETY: the joint is live and universal, and both angles are written where they may be.
+        unsafe { ode::dJointGetUniversalAngles(self.joints[joint], &mut first, &mut second) }
+        [first, second]
+    }
+
+    /// Rates of both angles, rad/s.
+    pub fn rates(&self, joint: usize) -> [f64; 2] {
+        // SAFETY: the joint is live and universal.
+        unsafe {
+            [
+                ode::dJointGetUniversalAngle1Rate(self.joints[joint]),
+                ode::dJointGetUniversalAngle2Rate(self.joints[joint]),
+            ]
+        }
+    }
+
+    /// Applies torques about both axes of a joint for the next step, N·m.
+    pub fn apply_torques(&mut self, joint: usize, torques: [f64; 2]) {
+        debug_assert!(torques.iter().all(|torque| torque.is_finite()));
+        // SAFETY: the joint is live and universal; ODE copes with any finite torque, and what a large one
+        // does is seen after the step.
+        unsafe { ode::dJointAddUniversalTorques(self.joints[joint], torques[0], torques[1]) }
+    }
+
+    /// Holds a joint at its present angles by a motor of zero velocity and unlimited torque.
+    pub fn lock(&mut self, joint: usize) {
+        self.set_motor(joint, f64::INFINITY);
+    }
+
+    /// Lets a joint turn freely.
+    pub fn unlock(&mut self, joint: usize) {
+        self.set_motor(joint, 0.0);
+    }
+
+    fn set_motor(&mut self, joint: usize, torque: f64) {
+        for (velocity, limit) in [(ode::dParamVel1, ode::dParamFMax1), (ode::dParamVel2, ode::dParamFMax2)] {
+            // SAFETY: the joint is live and universal, and both parameters are its motors'.
+            unsafe {
+                ode::dJointSetUniversalParam(self.joints[joint], velocity as i32, 0.0);
+                ode::dJointSetUniversalParam(self.joints[joint], limit as i32, torque);
+            }
+        }
+    }
+}
+
+impl Drop for World {
+    fn drop(&mut self) {
+        if self.failed {
+            return;
+        }
+        // SAFETY: destroying the world destroys its bodies and joints; the threading outlives it.
+        unsafe {
+            ode::dWorldDestroy(self.world);
+            ode::dThreadingFreeImplementation(self.threading);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

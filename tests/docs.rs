@@ -1,0 +1,127 @@
+//! What README and docs say of files and settings is so: links lead somewhere, equations have files, and DEVIATIONS.md has
+//! the values of `reproduce/paper.toml`.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Numbered equations of the paper.
+const EQUATIONS: usize = 27;
+
+/// Most words of the README.
+const WORDS: usize = 900;
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn read(name: &str) -> String {
+    fs::read_to_string(root().join(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
+}
+
+/// The pages that a reader comes to.
+fn pages() -> Vec<PathBuf> {
+    let names = ["README.md", "DEVIATIONS.md", "tests/README.md", "benches/README.md"];
+    let docs = fs::read_dir(root().join("docs")).unwrap().map(|entry| entry.unwrap().path());
+    let docs = docs.filter(|path| path.extension().is_some_and(|extension| extension == "md"));
+    names.into_iter().map(|name| root().join(name)).chain(docs).collect()
+}
+
+/// Targets of the links and pictures of a page, without those to other sites.
+fn links(text: &str) -> Vec<String> {
+    let targets = text.split("](").skip(1).filter_map(|rest| rest.split_once(')')).map(|(target, _)| target);
+    targets.filter(|target| !target.contains("://")).map(str::to_owned).collect()
+}
+
+/// Links that lead to no file, or to no heading or anchor of it.
+fn broken(page: &Path, text: &str) -> Vec<String> {
+    let leads = |target: &String| {
+        let (file, anchor) = target.split_once('#').unwrap_or((target, ""));
+        let path = if file.is_empty() { page.to_owned() } else { page.parent().unwrap().join(file) };
+        path.exists() && (anchor.is_empty() || anchors(&fs::read_to_string(&path).unwrap()).contains(anchor))
+    };
+    links(text).into_iter().filter(|target| !leads(target)).collect()
+}
+
+fn anchors(text: &str) -> BTreeSet<String> {
+    let explicit =
+        text.split("id=\"").skip(1).filter_map(|rest| rest.split_once('"')).map(|(id, _)| id.to_owned());
+    let plain = |heading: &str| -> String {
+        let kept = |letter: char| match letter {
+            letter if letter.is_alphanumeric() || letter == '-' || letter == '_' => {
+                Some(letter.to_ascii_lowercase())
+            }
+            ' ' => Some('-'),
+            _ => None,
+        };
+        heading.trim_start_matches('#').trim().chars().filter_map(kept).collect()
+    };
+    explicit.chain(text.lines().filter(|line| line.starts_with('#')).map(plain)).collect()
+}
+
+#[test]
+fn every_link_leads_somewhere() {
+    for page in pages() {
+        let text = fs::read_to_string(&page).unwrap();
+        assert_eq!(broken(&page, &text), [""; 0], "{}", page.display());
+    }
+    let page = root().join("README.md");
+    let text =
+        "[a](docs/nowhere.md) [b](README.md#no-such-heading) ![c](docs/files.md) [d](https://example.org)";
+    assert_eq!(broken(&page, text), ["docs/nowhere.md", "README.md#no-such-heading"]);
+}
+
+#[test]
+fn the_readme_is_short() {
+    let words = read("README.md").split_whitespace().count();
+    assert!(words <= WORDS, "the README has {words} words");
+}
+
+/// Equations that a table names in its first column, as `3`, `3, 4` or `3 to 5`.
+fn equations(table: &str) -> BTreeSet<usize> {
+    let mut found = BTreeSet::new();
+    for line in table.lines().filter(|line| line.starts_with('|')) {
+        let cell = line.trim_matches('|').split('|').next().unwrap().trim();
+        for range in cell.split(',') {
+            let ends: Vec<usize> =
+                range.split(|c: char| !c.is_ascii_digit()).filter_map(|number| number.parse().ok()).collect();
+            if let (Some(first), Some(last)) = (ends.first(), ends.last()) {
+                found.extend(*first..=*last);
+            }
+        }
+    }
+    found
+}
+
+#[test]
+fn every_equation_of_the_paper_has_a_file_that_exists() {
+    let table = read("docs/equations.md");
+    let missing: Vec<usize> = (1..=EQUATIONS).filter(|number| !equations(&table).contains(number)).collect();
+    assert_eq!(missing, [0; 0], "equations without a row");
+    let files: Vec<String> = links(&table).into_iter().filter(|target| target.ends_with(".rs")).collect();
+    assert!(files.len() >= 15, "{files:?}");
+    assert!(files.iter().all(|file| root().join("docs").join(file).exists()), "{files:?}");
+    assert_eq!(equations("| 3 | a |\n| 5 to 7, 9 | b |\nnine 11"), BTreeSet::from([3, 5, 6, 7, 9]));
+}
+
+#[test]
+fn deviations_have_every_setting_that_is_ours_with_its_value() {
+    let page = read("DEVIATIONS.md");
+    let mut section = String::new();
+    let mut ours = 0;
+    for line in read("reproduce/paper.toml").lines() {
+        if let Some(name) = line.strip_prefix('[') {
+            section = name.trim_end_matches(']').to_owned();
+        } else if let Some((assignment, comment)) = line.split_once('#')
+            && let Some((name, value)) = assignment.split_once('=')
+            && comment.contains("ours")
+        {
+            let (name, value) = (name.trim(), value.trim().trim_matches('"'));
+            let row = page.lines().find(|row| row.contains(&format!("`{section}.{name}`")));
+            let row = row.unwrap_or_else(|| panic!("DEVIATIONS.md has no row of {section}.{name}"));
+            assert!(row.contains(value), "{section}.{name} is {value}, but DEVIATIONS.md says {row}");
+            ours += 1;
+        }
+    }
+    assert!(ours > 30, "{ours}");
+}
