@@ -132,18 +132,30 @@ def source(results):
 
 
 def shown(value, unit):
-    """A number for people; rates in percent."""
+    """A number for people, written as in claims.md; rates in percent."""
     if value == "":
         return "–"
-    return f"{100 * float(value):.1f} %" if unit == "rate" else f"{float(value):.4g}"
+    number = float(value)
+    if unit == "p-value" and number < 0.001:
+        return "< 0.001"
+    return f"{percent(number)} %" if unit == "rate" else plain(number)
 
 
 def span(low, high, unit):
+    """A range for people, written as in claims.md."""
     if low == "" or high == "":
         return "–"
-    if low == high:
-        return shown(low, unit)
-    return f"{shown(low, unit).removesuffix(' %')} to {shown(high, unit)}"
+    write = percent if unit == "rate" else plain
+    ends = [write(float(low)), write(float(high))]
+    return " to ".join(ends[: 1 if float(low) == float(high) else 2]) + (" %" if unit == "rate" else "")
+
+
+def percent(rate):
+    return f"{100 * rate:.0f}" if rate in (0, 1) else f"{100 * rate:.1f}"
+
+
+def plain(number):
+    return f"{round(number, 3) + 0:g}"
 
 
 def experiment_1(results):

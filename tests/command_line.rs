@@ -162,12 +162,14 @@ fn an_experiment_is_the_same_on_any_number_of_threads_and_complete() {
     let out = folder.path().join("jobs-1");
     assert_eq!(
         header(&out.join("claims.csv")),
-        "id,figure,place,statement,published,reproduced,n,low,high,simulations,lowest,highest,accepted,verdict,found"
+        "id,counting,figure,place,statement,unit,published,wording,value,n,low,high,simulations,lowest,highest,\
+         accepted_low,accepted_high,verdict,found"
     );
     let claims = rows(&out.join("claims.csv"));
-    assert_eq!((claims[0]["id"].as_str(), claims[0]["published"].as_str()), ("tree-accuracy", "84.6 %"));
+    let first = ["id", "counting", "unit", "published", "wording"].map(|column| claims[0][column].as_str());
+    assert_eq!(first, ["tree-accuracy", "all-draws", "rate", "0.846", "84.6 %"]);
     // d = 14 was not run, so there is no rate, and that is what the table says.
-    assert_eq!((claims[0]["reproduced"].as_str(), claims[0]["verdict"].as_str()), ("", "not testable"));
+    assert_eq!((claims[0]["value"].as_str(), claims[0]["verdict"].as_str()), ("", "not testable"));
     for name in ["fig07-parts.csv", "fig08a-ari-baselines.csv", "fig08b-ari.csv", "fig10b-tree.csv"] {
         assert!(!rows(&out.join("figures").join(name)).is_empty(), "{name}");
     }

@@ -1,6 +1,7 @@
 //! The report as a reader sees it, on a phone and on a desk: opened in headless Chromium, every figure is
 //! there and nothing overflows. Skipped with a message where there is no Chromium.
 
+use std::collections::HashMap;
 use std::fs;
 use std::io::Write;
 use std::path::Path;
@@ -50,7 +51,16 @@ function look(width) {
         return { name: figure.id, width: box?.width ?? 0, height: box?.height ?? 0,
           smallest_text: Math.min(...sizes), cut };
       });
-      done({ width, scroll: page.documentElement.scrollWidth, rows: page.querySelectorAll(".claims tbody tr").length,
+      const ranges = [...page.querySelectorAll(".claims tbody svg.range")].map(svg => {
+        const box = svg.getBoundingClientRect(), marks = [...svg.querySelectorAll("rect, line, circle, text, polygon")];
+        return { words: svg.getAttribute("aria-label"), title: svg.querySelector("title").textContent,
+          width: box.width, bands: svg.querySelectorAll(".band").length,
+          cut: marks.filter(mark => {
+            const inner = mark.getBoundingClientRect();
+            return inner.left < box.left - 1 || inner.right > box.right + 1 || inner.bottom > box.bottom + 1;
+          }).map(mark => mark.tagName) };
+      });
+      done({ width, ranges, scroll: page.documentElement.scrollWidth, rows: page.querySelectorAll(".claims tbody tr").length,
         settings: page.querySelectorAll(".settings tbody tr").length,
         beyond: beyond.map(element => `${element.tagName} ${element.textContent.slice(0, 40)}`), figures });
     };
@@ -71,7 +81,18 @@ struct Seen {
     rows: usize,
     settings: usize,
     beyond: Vec<String>,
+    ranges: Vec<Range>,
     figures: Vec<Figure>,
+}
+
+/// The drawing of a claim's interval against its accepted range.
+#[derive(Debug, Deserialize)]
+struct Range {
+    words: String,
+    title: String,
+    width: f64,
+    bands: usize,
+    cut: Vec<String>,
 }
 
 #[derive(Debug, Deserialize)]
@@ -113,6 +134,23 @@ fn look(report: &str, folder: &Path) -> Option<Vec<Seen>> {
     Some(serde_json::from_str(&seen).unwrap_or_else(|error| panic!("{error}: {seen}")))
 }
 
+/// Claims of an experiment that have an accepted range.
+fn testable(claims: &Path) -> usize {
+    let mut reader = csv::Reader::from_path(claims).unwrap();
+    let rows = reader.deserialize().map(Result::unwrap);
+    rows.filter(|row: &HashMap<String, String>| !row["accepted_low"].is_empty()).count()
+}
+
+fn check_ranges(context: &str, ranges: &[Range], testable: usize) {
+    assert_eq!(ranges.len(), testable, "{context}: a drawing for each claim that can be tested");
+    for Range { words, title, width, bands, cut } in ranges {
+        assert!(words.starts_with("accepted ") && words.contains("reproduced "), "{context}: {words}");
+        assert_eq!(title, words, "{context}");
+        assert!(*width > 100.0 && *bands == 1, "{context}: {words}: {width} px, {bands} bands");
+        assert!(cut.is_empty(), "{context}: {words}: cuts off {cut:?}");
+    }
+}
+
 #[test]
 fn the_report_shows_every_figure_and_nothing_overflows() {
     let folder = tempfile::tempdir().unwrap();
@@ -147,12 +185,15 @@ fn the_report_shows_every_figure_and_nothing_overflows() {
         for forbidden in ["src=\"http", "href=\"http", "@import", "url("] {
             assert!(!report.contains(forbidden), "the report needs the network: {forbidden}");
         }
+        let testable = testable(&folder.path().join(experiment).join("claims.csv"));
+        assert!(testable >= 7, "{experiment}: {testable} claims can be tested");
         let Some(seen) = look(&report, folder.path()) else { return };
-        for Seen { width, scroll, rows, settings, beyond, figures: found } in seen {
+        for Seen { width, scroll, rows, settings, beyond, ranges, figures: found } in seen {
             let context = format!("{experiment} at {width} px");
             assert!(scroll <= width, "{context}: {scroll} px wide; {beyond:?}");
             assert!(beyond.is_empty(), "{context}: {beyond:?}");
             assert!(rows >= 10 && settings >= 30, "{context}: {rows} claims, {settings} settings");
+            check_ranges(&context, &ranges, testable);
             let names: Vec<&str> = found.iter().map(|figure| figure.name.as_str()).collect();
             assert_eq!(names, figures, "{context}");
             for Figure { name, width, height, smallest_text, cut } in &found {

@@ -1,20 +1,25 @@
-//! Published claims and an experiment's records → a verdict on each claim.
+//! Judge each claim of the paper by what an experiment found.
 //!
 //! What the paper says stands in `reproduce/published.toml`, with the range that counts as reproduced; the
-//! program only measures. A claim over several conditions holds if it holds at each that has a sample.
+//! program only measures. A claim over several conditions holds if it holds at each that has a value.
+
+use serde::{Deserialize, Serialize};
 
 use super::measure::{Evidence, measure};
 use super::published::{Claim, Experiment, Measure, claims};
 use super::statistics::Estimate;
 
 /// What the run says of a claim.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Verdict {
     /// Every value lies in the range.
+    #[serde(rename = "reproduced")]
     Reproduced,
     /// Some value does not.
+    #[serde(rename = "not reproduced")]
     NotReproduced,
     /// There is no value.
+    #[serde(rename = "not testable")]
     NotTestable,
 }
 
@@ -85,27 +90,27 @@ fn worst(claim: &Claim, measured: &[(String, Estimate)]) -> (Estimate, String, V
             let reason = match &claim.measure {
                 Measure::Nothing { reason } => reason.clone(),
                 _ if untested.is_empty() => "the run has no such condition".to_owned(),
-                _ => no_sample(&untested),
+                _ => no_value(&untested),
             };
             (Estimate::default(), reason, Verdict::NotTestable)
         }
         Some((outside, estimate, place)) => {
             let several = measured.len() > 1;
             let missing =
-                if untested.is_empty() { String::new() } else { format!("; {}", no_sample(&untested)) };
+                if untested.is_empty() { String::new() } else { format!("; {}", no_value(&untested)) };
             let place = format!("{}{place}{missing}", if several { "worst: " } else { "" });
             (*estimate, place, if outside <= 0.0 { Verdict::Reproduced } else { Verdict::NotReproduced })
         }
     }
 }
 
-/// Names the first few conditions without a sample.
-fn no_sample(places: &[&str]) -> String {
+/// Names the first few conditions without a value.
+fn no_value(places: &[&str]) -> String {
     const NAMED: usize = 4;
     let named = places[..places.len().min(NAMED)].join(", ");
     match places.len().saturating_sub(NAMED) {
-        0 => format!("no sample: {named}"),
-        more => format!("no sample: {named} and {more} more"),
+        0 => format!("no value: {named}"),
+        more => format!("no value: {named} and {more} more"),
     }
 }
 

@@ -40,8 +40,11 @@ pub struct Claim {
     pub place: String,
     /// What it says.
     pub statement: String,
+    /// Its value as a number, where the paper gives one.
+    #[serde(default)]
+    pub published: Option<f64>,
     /// Its value, in the paper's words.
-    pub published: String,
+    pub wording: String,
     /// The reproduced values that count as reproduced: a closed range.
     #[serde(default)]
     pub accept: Option<(f64, f64)>,
@@ -165,7 +168,42 @@ pub enum Measure {
     },
 }
 
+/// Unit of a claim's values.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Unit {
+    /// A fraction from 0 to 1: of draws, conditions or dimensions.
+    Rate,
+    /// A number of parts.
+    Parts,
+    /// An adjusted Rand index, or a difference of two.
+    Ari,
+    /// d.
+    Dimension,
+    /// p.
+    Coordination,
+    /// The p value of a test.
+    PValue,
+}
+
 impl Measure {
+    /// The unit of its values; `None` if nothing is measured.
+    pub fn unit(&self) -> Option<Unit> {
+        Some(match self {
+            Self::TreeRate { .. }
+            | Self::PooledTreeRate { .. }
+            | Self::TreeShare { .. }
+            | Self::AriWorse { .. }
+            | Self::BaselineShare { .. } => Unit::Rate,
+            Self::MeanParts { .. } | Self::ModalParts { .. } => Unit::Parts,
+            Self::MeanAri { .. } | Self::MedianAri { .. } | Self::BaselineLoss { .. } => Unit::Ari,
+            Self::BestDimension { .. } | Self::FirstDimension {} => Unit::Dimension,
+            Self::BestCoordination { .. } => Unit::Coordination,
+            Self::AriDifference { .. } | Self::TreeDependence {} => Unit::PValue,
+            Self::Nothing { .. } => return None,
+        })
+    }
+
     /// Whether it counts draws, so that it can count the draw of highest log posterior alone.
     pub fn counts_draws(&self) -> bool {
         matches!(

@@ -4,5 +4,7 @@ pub mod claims_table;
 pub mod figure_rows;
 pub mod figures;
 pub mod markdown;
+pub mod numbers;
 pub mod page;
 pub mod plot;
+pub mod ranges;

@@ -1,4 +1,4 @@
-//! The folder of a finished experiment → `report.html`, one file that needs nothing else to be read.
+//! Write what an experiment found into one page, `report.html`, that needs no other file and no network.
 //!
 //! It is made from the folder alone (claims.csv, manifest.json, figures/), so that it can be made again.
 
@@ -7,11 +7,14 @@ use std::path::Path;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use serde_json::Value;
 
+use super::claims_table::Row;
+use super::figure_rows::Counting;
+use super::ranges;
+use crate::analysis::claims::Verdict;
 use crate::analysis::published::{Figure, figures};
 use crate::files::manifest::{HashedFile, Manifest};
 use crate::files::provenance::Provenance;
 use crate::files::{FileError, read_text, tables, write_text};
-use crate::report::claims_table::{EXTENSION, Row};
 use crate::settings::PAPER;
 
 /// Writes `report.html` into the folder of an experiment.
@@ -78,26 +81,45 @@ fn page(rows: &[Row], figures: &[(Figure, String)], manifest: &Manifest) -> Mark
 }
 
 fn claims_section(rows: &[Row]) -> Markup {
-    let count = |verdict: &str| rows.iter().filter(|row| row.verdict == verdict).count();
+    let count = |verdict: Verdict| {
+        let with = rows.iter().filter(|row| row.verdict == Some(verdict)).count();
+        format!("{with} {}", verdict.name())
+    };
     html! {
         section id="claims" {
             h2 { "Claims" }
             p {
-                (count("reproduced")) " reproduced, " (count("not reproduced")) " not reproduced, "
-                (count("not testable")) " not testable. The accepted range of each was fixed before the first run \
-                 of its kind. Rows marked extension count only the draw of highest log posterior of each simulation, \
-                 which the paper does not."
+                (count(Verdict::Reproduced)) ", " (count(Verdict::NotReproduced)) ", " (count(Verdict::NotTestable))
+                ". The accepted range of each was fixed before the first run of its kind. Rows marked extension \
+                 count only the draw of highest log posterior of each simulation, which the paper does not."
             }
+            (ranges::legend())
             table.claims {
-                thead { tr { @for name in Row::HEADER { th scope="col" { (name) } } } }
-                tbody {
-                    @for row in rows {
-                        tr class=(class(&row.verdict)) {
-                            @for (name, cell) in Row::HEADER.iter().zip(row.cells()) {
-                                td data-label=(name) { @if *name == "verdict" { (mark(&row.verdict)) " " } (cell) }
-                            }
+                thead {
+                    tr {
+                        @for name in Row::HEADER {
+                            th scope="col" { (name) }
+                            @if name == DRAWN_AFTER { th scope="col" { (DRAWN) } }
                         }
                     }
+                }
+                tbody { @for row in rows { (claim_row(row)) } }
+            }
+        }
+    }
+}
+
+/// The column of the drawings, and the one that it follows.
+const DRAWN: &str = "drawn";
+const DRAWN_AFTER: &str = "reproduced";
+
+fn claim_row(row: &Row) -> Markup {
+    html! {
+        tr class=(class(row)) {
+            @for (name, cell) in Row::HEADER.into_iter().zip(row.in_words()) {
+                td data-label=(name) { @if name == "verdict" { (mark(row)) " " } (cell) }
+                @if name == DRAWN_AFTER {
+                    td data-label=(DRAWN) { @if let Some(drawing) = ranges::drawing(row) { (drawing) } }
                 }
             }
         }
@@ -105,16 +127,16 @@ fn claims_section(rows: &[Row]) -> Markup {
 }
 
 fn figure_section(figure: &Figure, svg: &str, rows: &[Row]) -> Markup {
-    let of_figure = |row: &&Row| row.figure == figure.number && row.verdict != EXTENSION;
+    let of_figure = |row: &&Row| row.figure == figure.number && row.counting == Counting::AllDraws;
     html! {
         figure id=(figure.name) {
             h3 { "Figure " (figure.number) ". " (figure.title) }
             figcaption {
                 p { b { "The paper" } " (" (figure.place) "): " (figure.says) }
                 @for row in rows.iter().filter(of_figure) {
-                    p class=(class(&row.verdict)) {
-                        (mark(&row.verdict)) " " b { (row.verdict) } ": " (row.statement)
-                        @if row.reproduced.is_some() { " — published " (row.published) ", reproduced " (row.cells()[3]) }
+                    p class=(class(row)) {
+                        (mark(row)) " " b { (row.verdict_in_words()) } ": " (row.statement)
+                        @if row.value.is_some() { " — published " (row.wording) ", reproduced " (row.reproduced()) }
                         " (" (row.found) ")"
                     }
                 }
@@ -245,16 +267,16 @@ fn text(value: &Value) -> String {
     }
 }
 
-fn class(verdict: &str) -> String {
-    verdict.replace(' ', "-")
+fn class(row: &Row) -> String {
+    row.verdict_in_words().replace(' ', "-")
 }
 
 /// A sign beside the word, so that colour is not alone in telling verdicts apart.
-fn mark(verdict: &str) -> &'static str {
-    match verdict {
-        "reproduced" => "✓",
-        "not reproduced" => "✗",
-        EXTENSION => "+",
-        _ => "–",
+fn mark(row: &Row) -> &'static str {
+    match row.verdict {
+        Some(Verdict::Reproduced) => "✓",
+        Some(Verdict::NotReproduced) => "✗",
+        Some(Verdict::NotTestable) => "–",
+        None => "+",
     }
 }

@@ -44,11 +44,15 @@ fn judge_by_id(id: &str, records: &[Record]) -> Judged {
 #[test]
 fn the_published_claims_load_with_the_accuracy_first() {
     let claims = claims();
-    assert_eq!((claims[0].id.as_str(), claims[0].published.as_str()), ("tree-accuracy", "84.6 %"));
-    for Claim { id, accept, measure, .. } in &claims {
+    let Claim { id, published, wording, .. } = &claims[0];
+    assert_eq!((id.as_str(), *published, wording.as_str()), ("tree-accuracy", Some(0.846), "84.6 %"));
+    for Claim { id, published, accept, measure, .. } in &claims {
         let computable = !matches!(measure, Measure::Nothing { .. });
         assert_eq!(accept.is_some(), computable, "{id} has a range if and only if it can be computed");
+        assert_eq!(measure.unit().is_some(), computable, "{id} has a unit if and only if it can be computed");
         assert!(accept.is_none_or(|(low, high)| low <= high), "{id}");
+        let inside = |published| accept.is_some_and(|(low, high)| (low..=high).contains(&published));
+        assert!(published.is_none_or(inside), "{id}: the paper's number is outside the accepted range");
     }
     assert!(figures().iter().all(|figure| figure.name.starts_with("fig") && !figure.says.is_empty()));
 }
@@ -65,7 +69,7 @@ fn a_rate_is_judged_on_both_sides_of_its_range() {
 }
 
 #[test]
-fn without_an_eligible_sample_there_is_no_rate() {
+fn without_an_eligible_draw_there_is_no_rate() {
     let judged = judge_by_id("tree-accuracy", &[record(Model::DpgmmLj, 14, 6, 0.9, false)]);
     assert_eq!((judged.verdict, judged.reproduced.value), (Verdict::NotTestable, None));
 }
@@ -75,7 +79,7 @@ fn the_worst_dimension_decides() {
     let records = [record(Model::DpgmmLj, 2, 5, 0.5, false), record(Model::DpgmmLj, 3, 7, 0.9, false)];
     let parts = judge_by_id("number-of-parts", &records);
     assert_eq!((parts.verdict, parts.reproduced.value), (Verdict::NotReproduced, Some(7.0)));
-    assert!(parts.place.starts_with("worst: d = 3; no sample: d = 4"), "{}", parts.place);
+    assert!(parts.place.starts_with("worst: d = 3; no value: d = 4"), "{}", parts.place);
     assert_eq!(judge_by_id("ari-unknown-number", &records).reproduced.value, Some(0.5));
 }
 
@@ -170,7 +174,7 @@ fn places_of_experiment_2_are_p() {
     assert_eq!((best.verdict, best.reproduced.value), (Verdict::Reproduced, Some(0.9)));
     let narrow = judge_by_id("tree-random-movement", &records);
     assert_eq!((narrow.verdict, narrow.reproduced.value), (Verdict::NotReproduced, Some(1.0)));
-    assert!(narrow.place.starts_with("worst: p = 0; no sample: p = 0.2"), "{}", narrow.place);
+    assert!(narrow.place.starts_with("worst: p = 0; no value: p = 0.2"), "{}", narrow.place);
     assert_eq!(judge_by_id("ari-without-movement", &records).verdict, Verdict::NotReproduced);
 }
 

@@ -34,7 +34,7 @@ impl<'a> Page<'a> {
         let settings = design.defaults().expect("a design has been checked");
         let (coordination, dimension) = (settings.motion.coordination, settings.experiment.dimension);
         let simulations = settings.experiment.simulations;
-        Self { design, rows, coordination, dimension, published: headline.published, accept, simulations }
+        Self { design, rows, coordination, dimension, published: headline.wording, accept, simulations }
     }
 
     /// The values of a factor, in their order.

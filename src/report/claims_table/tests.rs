@@ -1,0 +1,144 @@
+//! Rows of claims for machines and for people, and the comparison with the published rate.
+
+use super::*;
+use crate::analysis::claims::judge;
+use crate::analysis::conditions::Conditions;
+use crate::analysis::measure::Evidence;
+use crate::analysis::published::Experiment;
+use crate::pipeline::Record;
+use crate::stages::schema::Model;
+
+/// A draw of DPGMM-LJ at d = 14 and p = 0.9; `right` says whether its tree is right, if it is eligible.
+fn draw(simulation: usize, chain: usize, right: Option<bool>) -> Record {
+    Record {
+        simulation,
+        coordination: 0.9,
+        dimension: 14,
+        model: Model::DpgmmLj,
+        chain,
+        sweep: 1,
+        parts: 5,
+        log_posterior: Some(-(chain as f64)),
+        ari: if right.is_some() { 1.0 } else { 0.9 },
+        eligible: right.is_some(),
+        tree_correct: right == Some(true),
+    }
+}
+
+fn judged(records: Vec<Record>) -> Vec<Judged> {
+    let simulations = records.iter().map(|record| record.simulation).max().unwrap_or(1);
+    let conditions = Conditions::new(records, simulations, 1);
+    judge(Experiment::Exp1, &Evidence { conditions, baselines: Vec::new() })
+}
+
+/// 20 eligible draws of one simulation, of which the last is wrong.
+fn nineteen_of_twenty() -> Vec<Judged> {
+    judged((0..20).map(|chain| draw(1, chain, Some(chain < 19))).collect())
+}
+
+/// Without a draw that is eligible.
+fn no_eligible_draw() -> Vec<Judged> {
+    judged(vec![draw(1, 0, None)])
+}
+
+#[test]
+fn the_comparison_carries_difference_and_both_intervals() {
+    let line = comparison(&nineteen_of_twenty()[0]).unwrap();
+    for words in [
+        "published 84.6 %",
+        "reproduced 95.0 %",
+        "n = 20",
+        "95 % interval 76.4 to 99.1 %",
+        "difference +10.4 points",
+        "if published 11/13",
+        "if published 77/91",
+    ] {
+        assert!(line.contains(words), "{line} lacks {words}");
+    }
+    let line = comparison(&no_eligible_draw()[0]).unwrap();
+    assert!(line.contains("no rate, 0 of 0 eligible draws"), "{line}");
+    assert_eq!(comparison(&nineteen_of_twenty()[1]), None);
+}
+
+#[test]
+fn a_row_of_all_draws_has_numbers_for_machines_and_percent_for_people() {
+    let row = &rows(&nineteen_of_twenty())[0];
+    assert_eq!((row.id.as_str(), row.counting), ("tree-accuracy", Counting::AllDraws));
+    assert_eq!((row.unit, row.published, row.wording.as_str()), (Some(Unit::Rate), Some(0.846), "84.6 %"));
+    assert_eq!((row.value, row.cells.n, row.cells.simulations), (Some(0.95), 20, 1));
+    assert_eq!(row.accepted(), Some((0.746, 0.946)));
+    assert_eq!(row.verdict, Some(Verdict::NotReproduced));
+    let people = [
+        "not reproduced",
+        "Tree accuracy of DPGMM-LJ at p = 0.9, d = 14",
+        "84.6 %",
+        "95.0 %",
+        "76.4 to 99.1 %",
+        "20",
+        "",
+        "74.6 to 94.6 %",
+        "d = 14",
+        "figure 11b, section 6.2 and abstract",
+    ];
+    assert_eq!(row.in_words(), people);
+}
+
+#[test]
+fn a_claim_that_counts_draws_is_followed_by_its_best_draws() {
+    // The best draw of both simulations is that of chain 0; the simulations differ in the other.
+    let records =
+        vec![draw(1, 0, Some(true)), draw(1, 1, Some(false)), draw(2, 0, Some(true)), draw(2, 1, Some(true))];
+    let rows = rows(&judged(records));
+    let (all, best) = (&rows[0], &rows[1]);
+    assert_eq!((all.value, all.cells.n, all.cells.simulations), (Some(0.75), 4, 2));
+    assert_eq!((all.cells.lowest, all.cells.highest), (Some(0.5), Some(1.0)));
+
+    assert_eq!((best.id.as_str(), best.counting), ("tree-accuracy", Counting::BestDraw));
+    assert_eq!((best.value, best.cells.n, best.unit), (Some(1.0), 2, Some(Unit::Rate)));
+    assert_eq!(
+        (best.published, best.wording.as_str(), best.accepted(), best.verdict),
+        (None, "", None, None)
+    );
+    let [verdict, claim, published, reproduced, _, n, _, accepted, ..] = best.in_words();
+    assert_eq!([&verdict, &published, &reproduced, &n, &accepted], ["extension", "", "100 %", "2", ""]);
+    assert!(claim.ends_with("d = 14: draw of highest log posterior"), "{claim}");
+
+    // Only claims that count draws have a second row.
+    let of = |id| rows.iter().filter(|row| row.id == id).count();
+    assert_eq!((of("number-of-parts"), of("number-of-parts-2d")), (2, 1));
+}
+
+#[test]
+fn a_claim_without_draws_says_so_and_nowhere_none() {
+    let judged = no_eligible_draw();
+    let rows = rows(&judged);
+    let [verdict, _, _, reproduced, interval, n, spread, accepted, found, _] = rows[0].in_words();
+    assert_eq!([&verdict, &reproduced, &interval, &n, &spread], ["not testable", "–", "", "0", ""]);
+    assert_eq!((accepted.as_str(), found.as_str()), ("74.6 to 94.6 %", "no value: d = 14"));
+    let by_eye = rows.iter().find(|row| row.id == "natural-movement").unwrap();
+    assert_eq!((by_eye.unit, by_eye.accepted(), by_eye.in_words()[5].as_str()), (None, None, ""));
+
+    let page = markdown("What was run.", &judged);
+    assert!(page.starts_with("What was run.\n\n| verdict | claim | published | reproduced |"), "{page}");
+    assert!(page.trim_end().ends_with("0 of 0 eligible draws | not testable"), "{page}");
+    assert!(!page.contains("| none |"), "{page}");
+    let table = terminal_table(&judged);
+    assert!(table.starts_with("verdict "), "{table}");
+    assert!(table.contains("\nnot testable | tree-accuracy "), "{table}");
+    assert!(table.contains("\nextension    | tree-accuracy "), "{table}");
+}
+
+#[test]
+fn a_table_is_read_back_as_it_was_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("claims.csv");
+    for judged in [nineteen_of_twenty(), no_eligible_draw()] {
+        let rows = rows(&judged);
+        crate::files::tables::write_rows(&path, &rows).unwrap();
+        assert_eq!(crate::files::tables::read_rows::<Row>(&path).unwrap(), rows);
+    }
+    let text = std::fs::read_to_string(&path).unwrap();
+    let header = "id,counting,figure,place,statement,unit,published,wording,value,n,low,high,simulations,lowest,highest,\
+                  accepted_low,accepted_high,verdict,found";
+    assert_eq!(text.lines().next(), Some(header));
+}
