@@ -16,7 +16,7 @@ use bodyschema::stages::tree::Truth;
 fn recovered(dims: usize, separation: f64, judge: impl Fn(Truth, usize) -> Truth) -> (usize, usize, usize) {
     let mut schema = Settings::paper().schema;
     (schema.chains, schema.sweeps) = (6, 150);
-    // The joints of equation 21; what the other weights do is tested below.
+    // The joints of equation 22; what the other weights do is tested below.
     schema.edge_weight = EdgeWeight::Pairwise;
     let mut counts = (0, 0, 0);
     for at in 0..12 {

@@ -27,7 +27,7 @@ pub struct Settings {
     pub motion: Motion,
     /// The physics engine.
     pub physics: Physics,
-    /// The tactile sense (equation 25).
+    /// The tactile sense (equation 27).
     pub sense: Sense,
     /// From pressures to symbols (section 4.1).
     pub quantise: Quantise,

@@ -4,11 +4,11 @@
 //! |---|---|---|---|
 //! | – | [`agent`] | geometry, skin → [`Agent`](agent::Agent): parts, joints, sensors, and their true tree | section 5.1, figure 4 |
 //! | 1 | [`simulate`] | agent, motion → [`Trajectory`](simulate::Trajectory): T + 1 poses of each part (m), two angles of each joint (rad) | section 5.1 |
-//! | 2 | [`sense`] | trajectory → [`Tactile`](sense::Tactile): pressures, M × T, Pa | equation 25 |
+//! | 2 | [`sense`] | trajectory → [`Tactile`](sense::Tactile): pressures, M × T, Pa | equation 27 |
 //! | 3 | [`quantise`] | pressures → [`Symbols`](quantise::Symbols): M × T, 0 to N − 1 | section 4.1 |
-//! | 4 | [`distance`] | symbols → [`Distances`](distance::Distances): M × M, bits | equations 22 to 24 |
+//! | 4 | [`distance`] | symbols → [`Distances`](distance::Distances): M × M, bits | equations 23 to 26 |
 //! | 5 | [`body_map`] | distances → [`BodyMap`](body_map::BodyMap): M × d, bits | section 4.1 |
-//! | 6 | [`schema`] | body map → [`Draw`](schema::Draw)s: component of each sensor, tree | equations 1 to 21 |
+//! | 6 | [`schema`] | body map → [`Draw`](schema::Draw)s: component of each sensor, tree | equations 1 to 22 |
 //! | 7 | [`evaluate`] | draw, truth → [`Score`](evaluate::Score): adjusted Rand index, tree right or wrong | section 5.2 |
 //!
 //! Beside stage 6, [`baselines`] cluster the same body map; [`mixture`] holds what both build on, [`tree`] the trees.

@@ -1,4 +1,4 @@
-//! Stage 2. Trajectory → tactile pressures (equation 25), a pure function that needs no physics engine.
+//! Stage 2. Trajectory → tactile pressures (equation 27), a pure function that needs no physics engine.
 //!
 //! The paper's fluid has no viscosity: a sensor feels ρ (ṗ · n)² where it moves outward, along its normal
 //! n, and nothing otherwise. The velocity ṗ is the backward difference of its position over Δt, the
@@ -13,7 +13,7 @@ use crate::numerics::simd::vectorised;
 use crate::stages::agent::{Agent, Site, Vector3};
 use crate::stages::simulate::{Pose, Trajectory};
 
-/// The tactile sense (equation 25).
+/// The tactile sense (equation 27).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Sense {
@@ -57,7 +57,7 @@ impl Tactile {
 
 /// The pressures on every sensor of `agent` over a trajectory of at least one sample.
 ///
-/// With R the rotation of the part now and R', p' its rotation and centre one sample before, equation 25 of a
+/// With R the rotation of the part now and R', p' its rotation and centre one sample before, equation 27 of a
 /// sensor at l with normal n, both in the part's frame, is linear in twelve numbers that all sensors of the
 /// part share: ṗ · n = nᵀ [Rᵀ (p − p')] / Δt + nᵀ [Rᵀ (R − R')] l / Δt. They are found once for each part
 /// and sample, and what is left for a sensor is a product of twelve.
@@ -128,7 +128,7 @@ fn coefficients(site: &Site) -> [f64; 12] {
     coefficients
 }
 
-/// Equation 25 for some sensors of one part, one series after another, Pa.
+/// Equation 27 for some sensors of one part, one series after another, Pa.
 #[inline(always)]
 fn pressures_in_lanes(
     pressures: &mut [f32],
@@ -241,7 +241,7 @@ mod tests {
         assert_eq!(pressure(-0.2, 0.1, 1010.0), 0.0, "backwards is exactly nothing");
     }
 
-    /// Equation 25 as it is written, for one sensor between two samples, Pa.
+    /// Equation 27 as it is written, for one sensor between two samples, Pa.
     fn plain(before: &Pose, now: &Pose, site: &Site, settings: &Sense) -> f64 {
         let (from, to) = (before.place(site.position), now.place(site.position));
         let normal = now.rotation.map(|row| (0..3).map(|i| row[i] * site.normal[i]).sum::<f64>());
@@ -250,7 +250,7 @@ mod tests {
     }
 
     #[test]
-    fn a_moving_agent_feels_equation_25_on_any_processor() {
+    fn a_moving_agent_feels_equation_27_on_any_processor() {
         let mut scene = Scene::new();
         // Neither samples nor sensors are whole blocks and groups.
         scene.physics.duration = 100.1;

@@ -1,4 +1,4 @@
-//! Find the minimum spanning tree of weighted edges by Prim's algorithm (equation 21; Cormen et al.); hold the truth.
+//! Find the minimum spanning tree of weighted edges by Prim's algorithm (equation 22; Cormen et al.); hold the truth.
 
 use serde::{Deserialize, Serialize};
 

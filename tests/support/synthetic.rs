@@ -64,7 +64,7 @@ pub const ELIGIBLE_ARI: f64 = 0.95;
 /// A body in `dims` dimensions.
 ///
 /// Each joint is a draw of its parent component, and its child's centre is placed so that the joint is a
-/// draw of the child, too (equations 12 and 13 with a flat prior on the centres). `separation` stretches
+/// draw of the child, too (equations 13 and 14 with a flat prior on the centres). `separation` stretches
 /// both offsets: at 1 it is the model itself, at 0 all centres coincide.
 pub fn body(dims: usize, separation: f64, rng: &mut Stream) -> Body {
     let freedom = dims as f64 + 5.0;

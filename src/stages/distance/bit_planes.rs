@@ -187,7 +187,7 @@ mod tests {
         Symbols { samples, levels, values }
     }
 
-    /// Joint counts as equation 24 defines them.
+    /// Joint counts as equations 25 and 26 define them.
     fn by_symbols(symbols: &Symbols, i: usize, j: usize, joint: &mut [u32]) {
         joint.fill(0);
         for t in 0..symbols.samples {

@@ -1,4 +1,4 @@
-//! Stage 4. Symbols → information metric between all pairs of sensors (equations 22 to 24).
+//! Stage 4. Symbols → information metric between all pairs of sensors (equations 23 to 26).
 //!
 //! D(X, Y) = H(X|Y) + H(Y|X) in bits. It is 0 where each sensor's symbol tells the other's, so that two
 //! sensors that differ by names of symbols only are at distance 0: a metric up to relabelling.
@@ -96,7 +96,7 @@ fn histogram(series: &[u8], levels: usize) -> Vec<u32> {
     counts
 }
 
-/// Joint counts of two sensors, one pass over their symbols: the plain definition (equation 24).
+/// Joint counts of two sensors, one pass over their symbols: the plain definition (equations 25 and 26).
 fn count(symbols: &Symbols, i: usize, j: usize, joint: &mut [u32]) {
     joint.fill(0);
     let series = |sensor: usize| &symbols.values[sensor * symbols.samples..][..symbols.samples];
@@ -125,7 +125,7 @@ mod tests {
         Symbols { samples, levels, values }
     }
 
-    /// Equations 22 and 23 as they are written.
+    /// Equations 23 and 24 as they are written.
     fn by_definition(symbols: &Symbols, i: usize, j: usize) -> f64 {
         let (n, total) = (symbols.levels, symbols.samples as f64);
         let mut joint = vec![0; n * n];

@@ -1,4 +1,4 @@
-//! Stage 4, `distance`: the information metric between all pairs of sensors (equations 22 to 24).
+//! Stage 4, `distance`: the information metric between all pairs of sensors (equations 23 to 26).
 //!
 //! In: [`Symbols`](super::quantise::Symbols) of M sensors at T times. Out: [`Distances`], M × M, in bits.
 

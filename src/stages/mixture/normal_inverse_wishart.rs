@@ -1,4 +1,4 @@
-//! Update and draw the parameters of a Gaussian component under a normal-inverse-Wishart prior (equations 8, 9, 16
+//! Update and draw the parameters of a Gaussian component under a normal-inverse-Wishart prior (equations 9, 10, 16
 //! and 17).
 //!
 //! The paper's Λ ~ W(V₀, ν₀), μ ~ N(m₀, (k₀ Λ)⁻¹) is the normal-inverse-Wishart with scale Ψ₀ = V₀⁻¹.

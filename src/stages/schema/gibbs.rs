@@ -1,4 +1,4 @@
-//! One Gibbs sweep of the DPGMM and of the DPGMM-LJ (algorithm 1, equations 14 to 21).
+//! One Gibbs sweep of the DPGMM and of the DPGMM-LJ (algorithm 1, equations 15 to 22).
 //!
 //! Order as in the paper: z, then (μ, Σ), then π, then the joints q and the tree C. (μ, Σ) of a component
 //! are drawn together, which has the same target as drawing one given the other. All but the last update
@@ -97,7 +97,7 @@ impl<'a> Chain<'a> {
         }
     }
 
-    /// z_i ~ Categorical ∝ π_k N(x_i; μ_k, Σ_k) (equation 14).
+    /// z_i ~ Categorical ∝ π_k N(x_i; μ_k, Σ_k) (equation 15).
     fn draw_labels(&mut self, rng: &mut impl Rng) {
         assignments::draw(self.points, &self.gaussians, &self.log_weights, &mut self.labels, rng);
     }
@@ -143,7 +143,7 @@ impl<'a> Chain<'a> {
         self.log_weights = self.statistics.iter().map(draw).collect();
     }
 
-    /// q, and the minimum spanning tree over the active components (equations 18 and 21).
+    /// q, and the minimum spanning tree over the active components (equations 18 and 22).
     fn update_tree(&mut self, rng: &mut impl Rng) -> Result<(), InferenceError> {
         let active = self.active();
         let components = &self.gaussians;

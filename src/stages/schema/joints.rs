@@ -1,5 +1,5 @@
-//! Two Gaussian components → a latent joint between them, and the weight of that edge (equations 12, 13,
-//! 18 and 21).
+//! Two Gaussian components → a latent joint between them, and the weight of that edge (equations 13, 14,
+//! 18 and 22).
 //!
 //! A joint q is a point that both components generate, so it is drawn from the product of their
 //! densities, and it is data of both when they are updated.
@@ -27,7 +27,7 @@ pub fn draw_between(s: &Augmented, c: &Augmented, rng: &mut impl Rng) -> Result<
     Ok(q)
 }
 
-/// −log (N(q; μ_s, Σ_s) N(q; μ_c, Σ_c)), the quadratic cost of equation 21.
+/// −log (N(q; μ_s, Σ_s) N(q; μ_c, Σ_c)), the quadratic cost of equation 22.
 pub fn cost(q: &DVector<f64>, s: &Gaussian, c: &Gaussian) -> f64 {
     -s.log_density(q.as_slice()) - c.log_density(q.as_slice())
 }

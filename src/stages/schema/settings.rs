@@ -28,7 +28,7 @@ impl Model {
     }
 }
 
-/// The weight of an edge in the update of the tree (equation 21).
+/// The weight of an edge in the update of the tree (equation 22).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum EdgeWeight {

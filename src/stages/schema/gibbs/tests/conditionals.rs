@@ -9,7 +9,7 @@ fn scene() -> (Points, NormalInverseWishart) {
 }
 
 #[test]
-fn labels_follow_equation_14() {
+fn labels_follow_equation_15() {
     let (points, prior) = scene();
     let settings = settings(3);
     let p_value = |mutant: Mutant| {
