@@ -352,11 +352,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     write_rows(&folder.join("scaling.csv"), &rows)?;
     std::fs::write(folder.join("scaling.md"), table)?;
-    draw(&folder.join("scaling.svg"), &rows)
+    render(&folder.join("scaling.svg"), &rows)
 }
 
 /// A panel for each series, all axes logarithmic: time on the left, memory on the right.
-fn draw(path: &Path, rows: &[Row]) -> Result<(), Box<dyn Error>> {
+fn render(path: &Path, rows: &[Row]) -> Result<(), Box<dyn Error>> {
     let (time, memory, power) = (RGBColor(0, 114, 178), RGBColor(213, 94, 0), RGBColor(150, 150, 150));
     let area = SVGBackend::new(path, (1080, 1000)).into_drawing_area();
     area.fill(&WHITE)?;

@@ -50,9 +50,9 @@ fn condition(dimension: usize, separation: f64) -> Result<Row, Box<dyn Error>> {
         let stage = format!("synthetic d {dimension} separation {separation}");
         let body = synthetic::body(dimension, separation, &mut stream(1, 1, &stage, at));
         identifiable += usize::from(body.identifiable);
-        let samples = infer(&body.map, Model::DpgmmLj, &schema, 1, at, &|| ())?;
-        let judge = |sample| score(sample, &body.truth, synthetic::ELIGIBLE_ARI);
-        let scores: Vec<_> = samples.iter().map(judge).collect();
+        let draws = infer(&body.map, Model::DpgmmLj, &schema, 1, at, &|| ())?;
+        let judge = |draw| score(draw, &body.truth, synthetic::ELIGIBLE_ARI);
+        let scores: Vec<_> = draws.iter().map(judge).collect();
         let eligible = scores.iter().filter(|score| score.eligible).count();
         let right = scores.iter().filter(|score| score.eligible && score.tree_correct).count();
         partitions.push(eligible as f64 / scores.len() as f64);
@@ -91,10 +91,10 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
     }
     write_rows(&folder.join("recovery.csv"), &rows)?;
-    draw(&folder.join("recovery.svg"), &rows)
+    render(&folder.join("recovery.svg"), &rows)
 }
 
-fn draw(path: &Path, rows: &[Row]) -> Result<(), Box<dyn Error>> {
+fn render(path: &Path, rows: &[Row]) -> Result<(), Box<dyn Error>> {
     // Okabe & Ito's colours, and a marker size for each, so that neither alone carries the meaning.
     let colours =
         [RGBColor(0, 114, 178), RGBColor(213, 94, 0), RGBColor(0, 158, 115), RGBColor(204, 121, 167)];

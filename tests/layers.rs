@@ -51,7 +51,7 @@ const OUTSIDE: [&str; 17] = [
 ];
 
 /// Longest file, in lines.
-const LONGEST: usize = 400;
+const MAX_LINES: usize = 400;
 
 /// The source files by module path, `stages::agent` for `stages/agent.rs` and `stages` for `stages/mod.rs`.
 type Sources = BTreeMap<String, Source>;
@@ -221,8 +221,8 @@ fn breaches(sources: &Sources) -> Vec<String> {
         if !["lib", "main"].contains(&room) && position(&ROOMS, room).is_none() {
             breaches.push(format!("{module} is in no room"));
         }
-        if source.text.lines().count() > LONGEST {
-            breaches.push(format!("{module} is longer than {LONGEST} lines"));
+        if source.text.lines().count() > MAX_LINES {
+            breaches.push(format!("{module} is longer than {MAX_LINES} lines"));
         }
         let code = code(&source.text);
         if CORE.contains(&room) {
@@ -372,7 +372,7 @@ fn every_rule_finds_the_file_that_breaks_it() {
         ("numerics::simd", "use ode_sys as ode;", "names ode_sys, which one file wraps"),
         ("files", "pub mod npy;\npub fn f() {}", "(mod.rs) defines"),
         ("attic", "", "attic is in no room"),
-        ("report::page", &"\n".repeat(LONGEST + 1), "longer than 400 lines"),
+        ("report::page", &"\n".repeat(MAX_LINES + 1), "longer than 400 lines"),
     ] {
         let found = with(module, text);
         if expected.is_empty() {

@@ -25,8 +25,8 @@ fn recovered(dims: usize, separation: f64, judge: impl Fn(Truth, usize) -> Truth
             continue;
         }
         let truth = judge(body.truth, at);
-        for sample in infer(&body.map, Model::DpgmmLj, &schema, 1, at, &|| ()).unwrap() {
-            let score = score(&sample, &truth, synthetic::ELIGIBLE_ARI);
+        for draw in infer(&body.map, Model::DpgmmLj, &schema, 1, at, &|| ()).unwrap() {
+            let score = score(&draw, &truth, synthetic::ELIGIBLE_ARI);
             counts.0 += usize::from(score.eligible && score.tree_correct);
             counts.1 += usize::from(score.eligible);
             counts.2 += 1;
@@ -50,20 +50,16 @@ fn every_edge_weight_gives_a_tree_over_the_parts_and_the_collapsed_one_finds_it_
     let body = synthetic::body(14, 3.0, &mut stream(1, 1, "synthetic", at));
     for edge_weight in [EdgeWeight::Literal, EdgeWeight::Pairwise, EdgeWeight::Collapsed] {
         let schema = Schema { chains: 6, sweeps: 150, edge_weight, ..Settings::paper().schema };
-        let samples = infer(&body.map, Model::DpgmmLj, &schema, 1, 1, &|| ()).unwrap();
+        let draws = infer(&body.map, Model::DpgmmLj, &schema, 1, 1, &|| ()).unwrap();
         let mut right = 0;
-        for sample in &samples {
-            assert_eq!(
-                sample.tree.len() + 1,
-                parts(&sample.labels),
-                "{edge_weight:?}: a tree over all parts"
-            );
-            let mut reached = vec![sample.tree[0].parent];
-            for edge in &sample.tree {
+        for draw in &draws {
+            assert_eq!(draw.tree.len() + 1, parts(&draw.labels), "{edge_weight:?}: a tree over all parts");
+            let mut reached = vec![draw.tree[0].parent];
+            for edge in &draw.tree {
                 assert!(reached.contains(&edge.parent) && !reached.contains(&edge.child), "{edge_weight:?}");
                 reached.push(edge.child);
             }
-            let score = score(sample, &body.truth, synthetic::ELIGIBLE_ARI);
+            let score = score(draw, &body.truth, synthetic::ELIGIBLE_ARI);
             right += usize::from(score.eligible && score.tree_correct);
         }
         // The literal weight is sticky: a child keeps its joint where its first parent was.

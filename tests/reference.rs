@@ -8,7 +8,7 @@ use bodyschema::stages::body_map::{Fit, Majorisation};
 use bodyschema::stages::distance::{Distances, information_metric};
 use bodyschema::stages::evaluate::adjusted_rand_index;
 use bodyschema::stages::mixture::NormalInverseWishart;
-use bodyschema::stages::mixture::Statistics;
+use bodyschema::stages::mixture::SufficientStatistics;
 use bodyschema::stages::mixture::k_means;
 use bodyschema::stages::quantise::Symbols;
 use bodyschema::stages::tree::prim;
@@ -258,7 +258,7 @@ fn marginal_likelihoods_agree_with_scipy_s_multivariate_t() {
             )
             .unwrap()
         };
-        let mut data = Statistics::new(dims);
+        let mut data = SufficientStatistics::new(dims);
         points.iter().for_each(|point| data.add(point));
         close(model(prior.freedom).log_marginal(&data).unwrap(), log_marginal, 1e-9);
         let wrong = model(prior.freedom + 1.0).log_marginal(&data).unwrap();

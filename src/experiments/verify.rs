@@ -240,7 +240,7 @@ fn first_difference(own: &[Vec<String>], other: &[Vec<String>]) -> Option<String
 
 /// A draw of any table of them.
 #[derive(Deserialize)]
-struct Draw {
+struct DrawRow {
     simulation: Option<usize>,
     coordination: Option<f64>,
     dimension: Option<usize>,
@@ -260,7 +260,7 @@ struct Counts {
 /// Counts for each condition, if the table is one of draws that were evaluated.
 fn rates(path: &Path) -> Option<BTreeMap<String, Counts>> {
     let mut conditions = BTreeMap::<String, Counts>::new();
-    for draw in tables::read_rows::<Draw>(path).ok()? {
+    for draw in tables::read_rows::<DrawRow>(path).ok()? {
         let named = [
             draw.simulation.map(|simulation| format!("simulation {simulation}")),
             draw.coordination.map(|p| format!("p = {p}")),

@@ -21,9 +21,9 @@ impl FileError {
 
 /// A message on one line that a person reads to its end: it may quote what a file holds.
 pub fn one_line(message: &str) -> String {
-    const LONGEST: usize = 300;
+    const MAX_CHARACTERS: usize = 300;
     let line = message.split_whitespace().collect::<Vec<_>>().join(" ");
-    match line.char_indices().nth(LONGEST) {
+    match line.char_indices().nth(MAX_CHARACTERS) {
         Some((end, _)) => format!("{} …", &line[..end]),
         None => line,
     }

@@ -9,7 +9,7 @@ use npyz::{DType, Deserialize, NpyFile, Order, TypeChar, WriterBuilder};
 use super::error::FileError;
 use super::whole::write_whole;
 use crate::stages::body_map::BodyMap;
-use crate::stages::distance::{Distances, MOST_SENSORS};
+use crate::stages::distance::{Distances, MAX_SENSORS};
 use crate::stages::quantise::Symbols;
 use crate::stages::schema::Draw;
 use crate::stages::sense::Tactile;
@@ -66,11 +66,11 @@ pub fn read_tactile(path: &Path) -> Result<Tactile, FileError> {
 
 /// A matrix by sensors and times, in place of times and sensors, asks for distances beyond any memory.
 fn check_sensors<T>(path: &Path, matrix: &Matrix<T>) -> Result<(), FileError> {
-    if matrix.columns <= MOST_SENSORS {
+    if matrix.columns <= MAX_SENSORS {
         return Ok(());
     }
     let message = format!(
-        "has {} rows and {} columns; a row is a time and a column a sensor, of which there may be {MOST_SENSORS}: \
+        "has {} rows and {} columns; a row is a time and a column a sensor, of which there may be {MAX_SENSORS}: \
          is it transposed?",
         matrix.rows, matrix.columns
     );
@@ -217,9 +217,9 @@ impl<T: Copy> Matrix<T> {
 /// lengths of any shape. NumPy's own header of a matrix has about a hundred characters, two pairs of brackets, and the
 /// digits of two lengths and of a type.
 fn check_header(start: &[u8]) -> Result<(), &'static str> {
-    const LONGEST: usize = 10_000;
-    const MOST_BRACKETS: usize = 6;
-    const MOST_DIGITS: usize = 18;
+    const MAX_CHARACTERS: usize = 10_000;
+    const MAX_BRACKETS: usize = 6;
+    const MAX_DIGITS: usize = 18;
     let (length, text) = match *start {
         [b'\x93', b'N', b'U', b'M', b'P', b'Y', 1, _, a, b, ref text @ ..] => {
             (usize::from(u16::from_le_bytes([a, b])), text)
@@ -230,14 +230,14 @@ fn check_header(start: &[u8]) -> Result<(), &'static str> {
         // The reader says what is wrong.
         _ => return Ok(()),
     };
-    if length > LONGEST {
+    if length > MAX_CHARACTERS {
         return Err("has a header of more than 10000 characters, as NumPy never writes");
     }
     let text = &text[..length.min(text.len())];
     let brackets = text.iter().filter(|character| b"([{".contains(character)).count();
     let digits = text.iter().filter(|character| character.is_ascii_digit()).count();
     let hexadecimal = text.windows(2).any(|pair| pair.eq_ignore_ascii_case(b"0x"));
-    if brackets > MOST_BRACKETS || digits > MOST_DIGITS || hexadecimal {
+    if brackets > MAX_BRACKETS || digits > MAX_DIGITS || hexadecimal {
         return Err("has a header that is not that of a matrix: too many brackets or digits");
     }
     Ok(())

@@ -21,7 +21,7 @@ const BLOCKS: usize = 6;
 const KEPT_BLOCKS: usize = 2;
 
 /// Restarts after which the whole matrix is decomposed instead; fewer than ten are usual.
-const MOST_RESTARTS: usize = 300;
+const MAX_RESTARTS: usize = 300;
 
 /// Restarts for which the images of the basis are combined before they are found anew: a product with the matrix
 /// is what takes the time.
@@ -84,7 +84,7 @@ fn lanczos(matrix: MatRef<'_, f64>, wanted: usize, block: usize) -> Option<Eigen
     let mut rng = stream(0, 0, "eigenvectors", 0);
     let mut next = Mat::from_fn(n, block, |_, _| rng.random_range(-1.0..1.0));
     let mut held = 0;
-    for restart in 1..=MOST_RESTARTS {
+    for restart in 1..=MAX_RESTARTS {
         while held < most {
             let vectors = orthonormal(next, basis.subcols(0, held));
             next = product(matrix, vectors.as_ref());
@@ -124,8 +124,8 @@ fn lanczos(matrix: MatRef<'_, f64>, wanted: usize, block: usize) -> Option<Eigen
 /// Where little or nothing is left beside it, what is left is rounding, which points along the basis too: a pass
 /// counts only if it found unit vectors that were nearly orthogonal before it.
 fn orthonormal(mut vectors: Mat<f64>, basis: MatRef<'_, f64>) -> Mat<f64> {
-    const MOST_PASSES: usize = 6;
-    for pass in 0..MOST_PASSES {
+    const MAX_PASSES: usize = 6;
+    for pass in 0..MAX_PASSES {
         let along = product(basis.transpose(), vectors.as_ref());
         let along_length = along.norm_l2();
         vectors -= product(basis, along.as_ref());

@@ -64,8 +64,8 @@ pub fn chi_squared(counts: &[f64], probabilities: &[f64]) -> f64 {
     } else if rare.0 > 10.0 {
         return 0.0;
     }
-    let freedom = f64::from(cells - 1);
-    ChiSquared::new(freedom).expect("at least two cells").sf(statistic)
+    let degrees_of_freedom = f64::from(cells - 1);
+    ChiSquared::new(degrees_of_freedom).expect("at least two cells").sf(statistic)
 }
 
 #[test]

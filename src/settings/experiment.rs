@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::numerics::range::{Checked, check, count};
 
 /// Most values in a list of settings: far above how many panels, parts or curves a picture can show.
-pub const MOST_LISTED: usize = 60;
+pub const MAX_LISTED: usize = 60;
 
 /// The conditions that an experiment repeats.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -47,7 +47,7 @@ impl ExperimentSettings {
     }
 }
 
-/// Whether values rise strictly and are neither none nor more than [`MOST_LISTED`].
+/// Whether values rise strictly and are neither none nor more than [`MAX_LISTED`].
 pub fn rising<T: PartialOrd>(values: &[T]) -> bool {
-    (1..=MOST_LISTED).contains(&values.len()) && values.windows(2).all(|pair| pair[0] < pair[1])
+    (1..=MAX_LISTED).contains(&values.len()) && values.windows(2).all(|pair| pair[0] < pair[1])
 }

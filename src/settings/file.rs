@@ -18,7 +18,7 @@ pub const PAPER: &str = include_str!("../../reproduce/paper.toml");
 const QUICK: &str = include_str!("../../reproduce/quick.toml");
 
 /// Longest settings file, in bytes: far above any, and far below what a device or a wrong file may have.
-const LONGEST_FILE: u64 = 1 << 20;
+const MAX_FILE_BYTES: u64 = 1 << 20;
 
 impl Settings {
     /// The settings of the replication: `reproduce/paper.toml`.
@@ -75,10 +75,10 @@ impl Settings {
 /// If it cannot be read, or is too long to be one.
 pub fn read_toml(path: &Path) -> Result<String, SettingsError> {
     let mut text = String::new();
-    let read = File::open(path).and_then(|file| file.take(LONGEST_FILE + 1).read_to_string(&mut text));
+    let read = File::open(path).and_then(|file| file.take(MAX_FILE_BYTES + 1).read_to_string(&mut text));
     match read {
-        Ok(length) if length as u64 > LONGEST_FILE => {
-            Err(io::Error::other(format!("it is longer than {LONGEST_FILE} bytes")))
+        Ok(length) if length as u64 > MAX_FILE_BYTES => {
+            Err(io::Error::other(format!("it is longer than {MAX_FILE_BYTES} bytes")))
         }
         Ok(_) => Ok(text),
         Err(error) => Err(error),

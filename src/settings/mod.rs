@@ -6,6 +6,6 @@ mod file;
 mod sections;
 
 pub use self::error::SettingsError;
-pub use self::experiment::{ExperimentSettings, MOST_LISTED};
+pub use self::experiment::{ExperimentSettings, MAX_LISTED};
 pub use self::file::{PAPER, read_toml};
 pub use self::sections::Settings;

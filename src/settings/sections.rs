@@ -8,10 +8,10 @@ use crate::numerics::range::{Checked, check};
 use crate::stages::agent::{Geometry, PARTS, Skin};
 use crate::stages::baselines::Baselines;
 use crate::stages::body_map::Map;
-use crate::stages::distance::MOST_SENSORS;
+use crate::stages::distance::MAX_SENSORS;
 use crate::stages::evaluate::Evaluate;
 use crate::stages::quantise::Quantise;
-use crate::stages::schema::{Schema, fits};
+use crate::stages::schema::{Schema, matrices_fit};
 use crate::stages::sense::Sense;
 use crate::stages::simulate::{Motion, Physics};
 
@@ -78,7 +78,7 @@ impl Settings {
         check(
             "skin.around * skin.along + skin.caps",
             each,
-            each <= MOST_SENSORS / PARTS,
+            each <= MAX_SENSORS / PARTS,
             "at most 4000, which makes 20000 sensors in all",
         )
     }
@@ -109,7 +109,7 @@ impl Settings {
         let largest = experiment.dimensions.last().copied().unwrap_or(0);
         for (key, d) in [("experiment.dimensions", largest), ("experiment.dimension", experiment.dimension)] {
             let range = "such that schema.components times its square is at most 10 million";
-            check(key, d, fits(components, d), range)?;
+            check(key, d, matrices_fit(components, d), range)?;
         }
         Ok(())
     }

@@ -8,8 +8,8 @@ use super::super::figure_rows::{AgentPoint, AgentRow};
 use super::axes::{Axis, Panel, Rect, X_LABELS, around};
 use super::canvas::plot_error;
 use super::canvas::{
-    Anchor, Canvas, FONT, GREY, INK, MarkerStyle, PALETTE, Place, PlotError, Rendered, Shape, WIDTH, paint,
-    stroke,
+    Anchor, Canvas, FONT, GREY, INK, MarkerStyle, PALETTE, Place, PlotError, Rendered, Shape, WIDTH,
+    render_svg, stroke,
 };
 use super::legend::{Key, Legend};
 use super::values::{check, few};
@@ -17,7 +17,7 @@ use super::values::{check, few};
 type Vector = nalgebra::Vector3<f64>;
 
 /// A cylinder, as far as points tell.
-struct Part {
+struct Cylinder {
     number: usize,
     proximal: Vector,
     distal: Vector,
@@ -30,7 +30,7 @@ fn position(row: &AgentRow) -> Vector {
     Vector::new(row.x_m, row.y_m, row.z_m)
 }
 
-impl Part {
+impl Cylinder {
     fn of(rows: &[AgentRow], number: usize) -> Result<Self, PlotError> {
         let of = |kind| rows.iter().filter(move |row| row.part == number && row.kind == kind).map(position);
         let (Some(proximal), Some(distal)) =
@@ -92,7 +92,7 @@ fn far_sensor(part: usize) -> MarkerStyle {
 pub fn render(rows: &[AgentRow]) -> Result<String, PlotError> {
     check("position", rows.iter().flat_map(|row| [row.x_m, row.y_m, row.z_m]), -1e6, 1e6)?;
     let numbers = few("part", rows.iter().map(|row| row.part))?;
-    let parts = numbers.iter().map(|&number| Part::of(rows, number)).collect::<Result<Vec<_>, _>>()?;
+    let parts = numbers.iter().map(|&number| Cylinder::of(rows, number)).collect::<Result<Vec<_>, _>>()?;
     let joints: Vec<Vector> = rows.iter().filter(|row| row.kind == AgentPoint::Joint).map(position).collect();
     let first = parts[0].number;
     let mut legend = Legend::default();
@@ -119,7 +119,7 @@ pub fn render(rows: &[AgentRow]) -> Result<String, PlotError> {
     let near_scale = near_scale.min(110.0 / part.radius.max(1e-9));
     let near_high = 2.0 * part.radius * near_scale;
 
-    paint(close_up + near_high + 52.0, |canvas| {
+    render_svg(close_up + near_high + 52.0, |canvas| {
         legend.render(canvas)?;
         canvas.text("(a) rest pose, seen along z", (8.0, top + 11.0), Anchor::Start, FONT, INK)?;
         let outer =
@@ -141,7 +141,7 @@ pub fn render(rows: &[AgentRow]) -> Result<String, PlotError> {
 }
 
 /// A part in the plane of x and y.
-fn whole(canvas: &Canvas, panel: &Panel, part: &Part) -> Rendered {
+fn whole(canvas: &Canvas, panel: &Panel, part: &Cylinder) -> Rendered {
     let colour = sensor(part.number).colour;
     let axis = part.axis();
     let side = Vector::new(-axis.y, axis.x, 0.0) * part.radius;
@@ -171,7 +171,7 @@ fn whole(canvas: &Canvas, panel: &Panel, part: &Part) -> Rendered {
 }
 
 /// A part seen from its side, turned a little so that its rings are ellipses.
-fn cylinder(canvas: &Canvas, part: &Part, centre: Place, scale: f64) -> Rendered {
+fn cylinder(canvas: &Canvas, part: &Cylinder, centre: Place, scale: f64) -> Rendered {
     let axis = part.axis();
     let vertical = if axis.z.abs() < 0.9 { Vector::z() } else { Vector::y() };
     let up = (vertical - vertical.dot(&axis) * axis).normalize();
@@ -201,9 +201,9 @@ fn cylinder(canvas: &Canvas, part: &Part, centre: Place, scale: f64) -> Rendered
         let visible = if on_end { along < 0.0 } else { depth > -1e-9 };
         if visible { &mut near } else { &mut far }.push(place(along, off.dot(&up), depth));
     }
-    for (places, look) in [(far, far_sensor(part.number)), (near, sensor(part.number))] {
+    for (places, style) in [(far, far_sensor(part.number)), (near, sensor(part.number))] {
         for at in places {
-            canvas.marker(at, 2.4, look)?;
+            canvas.marker(at, 2.4, style)?;
         }
     }
     Ok(())

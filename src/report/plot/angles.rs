@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use super::super::figure_rows::AngleRow;
 use super::axes::{Axis, Panel, Rect, X_BARE, X_LABELS, around, plain};
 use super::canvas::{
-    Canvas, INK, MarkerStyle, PALETTE, Place, PlotError, Rendered, SHAPES, WIDTH, paint, stroke,
+    Canvas, INK, MarkerStyle, PALETTE, Place, PlotError, Rendered, SHAPES, WIDTH, render_svg, stroke,
 };
 use super::legend::{Key, Legend};
 use super::values::{check, few};
@@ -24,7 +24,7 @@ pub fn render(rows: &[AngleRow]) -> Result<String, PlotError> {
 
     let mut legend = Legend::default();
     for (at, joint) in joints.iter().enumerate() {
-        legend.add(Key::Marker(look(at), 3.6), format!("joint {joint}"));
+        legend.add(Key::Marker(style(at), 3.6), format!("joint {joint}"));
     }
     legend.add(Key::Break, "");
     legend.add(Key::Line(INK, 1.6), "first angle");
@@ -33,7 +33,7 @@ pub fn render(rows: &[AngleRow]) -> Result<String, PlotError> {
     let top = legend.height();
     let height = top + coordinations.len() as f64 * (above + each) + X_LABELS - X_BARE + 4.0;
     let times = around(rows.iter().map(|row| row.time_s), 0.01);
-    paint(height, |canvas| {
+    render_svg(height, |canvas| {
         legend.render(canvas)?;
         for (at, p) in coordinations.iter().enumerate() {
             let last = at + 1 == coordinations.len();
@@ -61,7 +61,7 @@ pub fn render(rows: &[AngleRow]) -> Result<String, PlotError> {
     })
 }
 
-fn look(joint: usize) -> MarkerStyle {
+fn style(joint: usize) -> MarkerStyle {
     MarkerStyle {
         colour: PALETTE[[0, 3, 6, 2, 1, 4, 5][joint % 7]],
         shape: SHAPES[joint % SHAPES.len()],
@@ -75,7 +75,7 @@ fn sign(angle: f64) -> &'static str {
 
 /// Both angles of one joint.
 fn one(canvas: &Canvas, panel: &Panel, rows: &[&AngleRow], joint: usize, joints: usize) -> Rendered {
-    let look = look(joint);
+    let style = style(joint);
     type Angle = fn(&AngleRow) -> f64;
     let angles: [(Angle, f64); 2] = [(|row| row.angle2_rad, 0.5), (|row| row.angle1_rad, 1.2)];
     for (angle, width) in angles {
@@ -83,7 +83,7 @@ fn one(canvas: &Canvas, panel: &Panel, rows: &[&AngleRow], joint: usize, joints:
         let runs = rows.chunk_by(|a, b| (angle(a) - angle(b)).abs() <= PI);
         for run in runs.filter(|run| run.len() > 1) {
             let line: Vec<Place> = run.iter().map(|row| panel.at(row.time_s, angle(row))).collect();
-            canvas.line(&line, stroke(look.colour, width))?;
+            canvas.line(&line, stroke(style.colour, width))?;
         }
     }
     // Beside those of the other joints.
@@ -91,7 +91,7 @@ fn one(canvas: &Canvas, panel: &Panel, rows: &[&AngleRow], joint: usize, joints:
     let first = step * (joint as f64 + 0.5) / joints as f64;
     for at in 0..MARKERS as usize {
         if let Some(row) = rows.get((first + at as f64 * step) as usize) {
-            canvas.marker(panel.at(row.time_s, row.angle1_rad), 3.0, look)?;
+            canvas.marker(panel.at(row.time_s, row.angle1_rad), 3.0, style)?;
         }
     }
     Ok(())

@@ -7,7 +7,7 @@ use super::axes::{Axis, Panel, Rect, X_BARE, X_LABELS, sparse};
 use super::canvas::plot_error;
 use super::canvas::{
     Anchor, BLUE, Canvas, FONT, GREY, INK, MarkerStyle, PlotError, Rendered, SMALL, Shape, VERMILLION, WIDTH,
-    paint, stroke,
+    render_svg, stroke,
 };
 use super::legend::{FAINT, Key, Legend};
 use super::values::{check, distinct, few};
@@ -55,7 +55,7 @@ pub fn parts(rows: &[PartsRow], mark: Option<&Mark>) -> Result<String, PlotError
     let most = most as f64;
     let left = 22.0;
     let wide = (WIDTH - left - 4.0) / COLUMNS as f64;
-    paint(height, |canvas| {
+    render_svg(height, |canvas| {
         legend.render(canvas)?;
         for (at, dimension) in dimensions.iter().enumerate() {
             let (line, column) = (at / COLUMNS, at % COLUMNS);
@@ -148,7 +148,7 @@ pub fn boxes(rows: &[BoxRow]) -> Result<String, PlotError> {
     let numbers = 16.0;
     let top = legend.height() + numbers + 4.0;
     let height = top + 260.0 + X_LABELS;
-    paint(height, |canvas| {
+    render_svg(height, |canvas| {
         legend.render(canvas)?;
         let dimensions = distinct(rows.iter().map(|row| row.dimension as f64));
         let range = dimensions[0] - 0.7..dimensions[dimensions.len() - 1] + 0.7;

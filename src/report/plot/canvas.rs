@@ -85,7 +85,7 @@ pub enum Shape {
     Cross,
 }
 
-/// What a series looks like.
+/// The marker style of a series: colour, shape, and whether it is hollow.
 #[derive(Debug, Clone, Copy)]
 pub struct MarkerStyle {
     /// Colour of markers and lines.
@@ -97,7 +97,7 @@ pub struct MarkerStyle {
 }
 
 impl MarkerStyle {
-    /// The look of the series of number `at`.
+    /// The style of series number `at`.
     pub fn of(at: usize) -> Self {
         Self { colour: PALETTE[at % PALETTE.len()], shape: SHAPES[at % SHAPES.len()], hollow: false }
     }
@@ -157,13 +157,13 @@ pub fn text_width(text: &str, size: f64) -> f64 {
 }
 
 /// The SVG of a picture of some height.
-pub fn paint(height: f64, draw: impl FnOnce(&Canvas) -> Rendered) -> Result<String, PlotError> {
+pub fn render_svg(height: f64, render: impl FnOnce(&Canvas) -> Rendered) -> Result<String, PlotError> {
     let size = (fine(WIDTH) as u32, fine(height) as u32);
     let mut svg = String::new();
     {
         let canvas = Canvas { area: SVGBackend::with_string(&mut svg, size).into_drawing_area() };
         canvas.area.fill(&WHITE)?;
-        draw(&canvas)?;
+        render(&canvas)?;
         canvas.area.present()?;
     }
     let units = format!("<svg width=\"{}\" height=\"{}\"", size.0, size.1);
@@ -238,16 +238,16 @@ impl Canvas<'_> {
     }
 
     /// A marker of about `radius` points.
-    pub fn marker(&self, (x, y): Place, radius: f64, look: MarkerStyle) -> Rendered {
-        let line = stroke(look.colour, if look.hollow { 1.4 } else { 1.6 });
+    pub fn marker(&self, (x, y): Place, radius: f64, style: MarkerStyle) -> Rendered {
+        let line = stroke(style.colour, if style.hollow { 1.4 } else { 1.6 });
         let around = |corners: &[Place]| -> Vec<Place> {
             corners.iter().map(|(dx, dy)| (x + radius * dx, y + radius * dy)).collect()
         };
-        let corners = match look.shape {
+        let corners = match style.shape {
             Shape::Circle => {
                 let disc = |style| Circle::new(fine_place((x, y)), fine(radius), style);
-                if !look.hollow {
-                    return Ok(self.area.draw(&disc(look.colour.filled()))?);
+                if !style.hollow {
+                    return Ok(self.area.draw(&disc(style.colour.filled()))?);
                 }
                 self.area.draw(&disc(WHITE.filled()))?;
                 return Ok(self.area.draw(&disc(line))?);
@@ -278,8 +278,8 @@ impl Canvas<'_> {
                 ])
             }
         };
-        if !look.hollow {
-            return self.fill(&corners, look.colour);
+        if !style.hollow {
+            return self.fill(&corners, style.colour);
         }
         self.fill(&corners, WHITE)?;
         let closed: Vec<Place> = corners.iter().chain(&corners[..2]).copied().collect();

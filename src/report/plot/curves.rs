@@ -8,7 +8,7 @@ use super::super::figure_rows::{Counting, CurveRow};
 use super::axes::{Axis, Panel, Rect, X_BARE, X_LABELS, percent, plain, sparse};
 use super::canvas::plot_error;
 use super::canvas::{
-    Anchor, Canvas, GREY, INK, MarkerStyle, PlotError, Rendered, SMALL, Shape, WIDTH, paint, stroke,
+    Anchor, Canvas, GREY, INK, MarkerStyle, PlotError, Rendered, SMALL, Shape, WIDTH, render_svg, stroke,
     text_width,
 };
 use super::legend::{FAINT, Key, Legend};
@@ -121,8 +121,8 @@ fn name(method: &str) -> &str {
     }
 }
 
-/// A method looks the same in every figure; what an extension counts is hollow.
-fn look(row: &CurveRow, methods: &[&str]) -> MarkerStyle {
+/// The marker style of a series: each method has the same one in every figure, and extensions of the paper are hollow.
+fn style(row: &CurveRow, methods: &[&str]) -> MarkerStyle {
     let at = match row.method.as_str() {
         "dpgmm-lj" => 0,
         "dpgmm" => 3,
@@ -137,18 +137,18 @@ pub fn render(rows: &[CurveRow], kind: &Kind, mark: Option<&Mark>) -> Result<Str
     kind.check(rows)?;
     let methods = few("method", rows.iter().map(|row| row.method.as_str()))?;
     let all = series(rows);
-    let looks: Vec<MarkerStyle> = all.iter().map(|series| look(series[0], &methods)).collect();
+    let styles: Vec<MarkerStyle> = all.iter().map(|series| style(series[0], &methods)).collect();
 
     let mut legend = Legend::default();
-    let extensions = looks.iter().filter(|look| look.hollow).count();
-    for (series, &look) in all.iter().zip(&looks).filter(|(_, look)| !look.hollow) {
+    let extensions = styles.iter().filter(|style| style.hollow).count();
+    for (series, &style) in all.iter().zip(&styles).filter(|(_, style)| !style.hollow) {
         let tree = if kind.rates && series[0].method == "dpgmm" { " + Prim" } else { "" };
-        legend.add(Key::Curve(look), format!("{}{tree}", name(&series[0].method)));
+        legend.add(Key::Curve(style), format!("{}{tree}", name(&series[0].method)));
     }
     legend.add(Key::Whisker, "95 % interval");
-    if let Some(&look) = looks.iter().find(|look| look.hollow) {
+    if let Some(&style) = styles.iter().find(|style| style.hollow) {
         let which = if extensions > 1 { "hollow: " } else { "" };
-        legend.add(Key::Marker(look, RADIUS), format!("{which}draw of highest log posterior (extension)"));
+        legend.add(Key::Marker(style, RADIUS), format!("{which}draw of highest log posterior (extension)"));
     }
     if rows.iter().any(|row| row.cells.lowest.is_some()) {
         legend.add(Key::Band(INK, FAINT), "lowest to highest simulation");
@@ -163,7 +163,7 @@ pub fn render(rows: &[CurveRow], kind: &Kind, mark: Option<&Mark>) -> Result<Str
 
     let top = legend.height() + N_LINE * all.len() as f64 + 4.0;
     let height = top + 250.0 + X_LABELS;
-    paint(height, |canvas| {
+    render_svg(height, |canvas| {
         legend.render(canvas)?;
         let (x, y) = kind.axes(rows);
         let outer = Rect { left: 4.0, top, width: WIDTH - 10.0, height: height - top - 2.0 };
@@ -176,10 +176,10 @@ pub fn render(rows: &[CurveRow], kind: &Kind, mark: Option<&Mark>) -> Result<Str
             let (x, bottom) = panel.at(x, y.range.start);
             canvas.line(&[(x, bottom), (x, bottom + 2.5)], stroke(GREY, 0.8))?;
         }
-        curves(canvas, &panel, &all, &looks, kind)?;
-        for (at, (series, &look)) in all.iter().zip(&looks).enumerate() {
+        curves(canvas, &panel, &all, &styles, kind)?;
+        for (at, (series, &style)) in all.iter().zip(&styles).enumerate() {
             let y = top - N_LINE * (all.len() - at) as f64 + N_LINE / 2.0 - 2.0;
-            numbers(canvas, &panel, y, series, look, kind)?;
+            numbers(canvas, &panel, y, series, style, kind)?;
         }
         Ok(())
     })
@@ -200,7 +200,7 @@ pub fn baselines(rows: &[CurveRow], mark: Option<&Mark>) -> Result<String, PlotE
         return plot_error("has a row without a number of clusters");
     }
     few("method", methods.iter().copied())?;
-    let look =
+    let style =
         |row: &CurveRow| MarkerStyle::of(told.iter().position(|k| Some(*k) == row.clusters).unwrap_or(0));
 
     let mut legend = Legend::default();
@@ -210,13 +210,13 @@ pub fn baselines(rows: &[CurveRow], mark: Option<&Mark>) -> Result<String, PlotE
     if let Some(mark) = mark {
         legend.add(Key::Dashes, mark.name.clone());
     }
-    let samples = distinct(rows.iter().map(|row| row.cells.n));
-    let samples = match samples[..] {
+    let counts = distinct(rows.iter().map(|row| row.cells.n));
+    let counts = match counts[..] {
         [n] => format!("n = {n}"),
         [least, .., most] => format!("n = {least} to {most}"),
         [] => String::new(),
     };
-    legend.add(Key::Whisker, format!("95 % interval, {samples}"));
+    legend.add(Key::Whisker, format!("95 % interval, {counts}"));
 
     if rows.iter().any(|row| row.cells.lowest.is_some()) {
         legend.add(Key::Band(INK, FAINT), "lowest to highest simulation");
@@ -224,7 +224,7 @@ pub fn baselines(rows: &[CurveRow], mark: Option<&Mark>) -> Result<String, PlotE
     let (above, each) = (20.0, 186.0);
     let top = legend.height();
     let height = top + methods.len() as f64 * (above + each) + X_LABELS - X_BARE + 4.0;
-    paint(height, |canvas| {
+    render_svg(height, |canvas| {
         legend.render(canvas)?;
         let (x, y) = kind.axes(rows);
         let y = Axis { name: "mean ARI", ..y };
@@ -244,8 +244,8 @@ pub fn baselines(rows: &[CurveRow], mark: Option<&Mark>) -> Result<String, PlotE
             }
             let mine: Vec<CurveRow> = rows.iter().filter(|row| row.method == *method).cloned().collect();
             let all = series(&mine);
-            let looks: Vec<MarkerStyle> = all.iter().map(|series| look(series[0])).collect();
-            curves(canvas, &panel, &all, &looks, &kind)?;
+            let styles: Vec<MarkerStyle> = all.iter().map(|series| style(series[0])).collect();
+            curves(canvas, &panel, &all, &styles, &kind)?;
         }
         Ok(())
     })
@@ -260,7 +260,7 @@ fn curves(
     canvas: &Canvas,
     panel: &Panel,
     all: &[Vec<&CurveRow>],
-    looks: &[MarkerStyle],
+    styles: &[MarkerStyle],
     kind: &Kind,
 ) -> Rendered {
     let xs = distinct(all.iter().flatten().map(|row| kind.x(row)));
@@ -276,28 +276,28 @@ fn curves(
     for (at, series) in all.iter().enumerate() {
         let mut series = series.clone();
         series.sort_by(|a, b| kind.x(a).total_cmp(&kind.x(b)));
-        sorted.push((at, series, looks[at]));
+        sorted.push((at, series, styles[at]));
     }
     // From the back to the front, so that no bar hides a marker.
-    for (at, series, look) in sorted.iter().filter(|(.., look)| !look.hollow) {
+    for (at, series, style) in sorted.iter().filter(|(.., style)| !style.hollow) {
         for row in series {
             if let (Some(low), Some(high)) = (row.cells.lowest, row.cells.highest) {
                 let ((x, low), (_, high)) = (place(*at, row, low), place(*at, row, high));
-                canvas.bar((x - 4.0, high), (x + 4.0, low), look.colour.mix(FAINT))?;
+                canvas.bar((x - 4.0, high), (x + 4.0, low), style.colour.mix(FAINT))?;
             }
         }
         for run in series.split(|row| row.value.is_none()).filter(|run| run.len() > 1) {
             let line: Vec<_> = run.iter().filter_map(|row| Some(place(*at, row, row.value?))).collect();
-            canvas.line(&line, stroke(look.colour, 1.4))?;
+            canvas.line(&line, stroke(style.colour, 1.4))?;
         }
     }
-    for (at, series, look) in &sorted {
+    for (at, series, style) in &sorted {
         for row in series {
             if let (Some(low), Some(high)) = (row.cells.low, row.cells.high) {
-                canvas.line(&[place(*at, row, low), place(*at, row, high)], stroke(look.colour, 1.3))?;
+                canvas.line(&[place(*at, row, low), place(*at, row, high)], stroke(style.colour, 1.3))?;
             }
             match row.value {
-                Some(value) => canvas.marker(place(*at, row, value), RADIUS, *look)?,
+                Some(value) => canvas.marker(place(*at, row, value), RADIUS, *style)?,
                 None => canvas.marker(place(*at, row, 0.0), RADIUS, missing())?,
             }
         }
@@ -311,10 +311,10 @@ fn numbers(
     panel: &Panel,
     y: f64,
     series: &[&CurveRow],
-    look: MarkerStyle,
+    style: MarkerStyle,
     kind: &Kind,
 ) -> Rendered {
-    canvas.marker((panel.inner.left - 40.0, y), RADIUS, look)?;
+    canvas.marker((panel.inner.left - 40.0, y), RADIUS, style)?;
     canvas.text("n =", (panel.inner.left - 13.0, y), Anchor::End, SMALL, INK)?;
     let mut places: Vec<(f64, String)> =
         series.iter().map(|row| (panel.at(kind.x(row), 0.0).0, row.cells.n.to_string())).collect();

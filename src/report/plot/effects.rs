@@ -6,8 +6,8 @@ use plotters::style::WHITE;
 
 use super::axes::{Axis, Panel, Rect, X_BARE, around};
 use super::canvas::{
-    Anchor, BLUE, FONT, GREY, INK, MarkerStyle, PlotError, Rendered, SMALL, Shape, VERMILLION, WIDTH, paint,
-    stroke, text_width,
+    Anchor, BLUE, FONT, GREY, INK, MarkerStyle, PlotError, Rendered, SMALL, Shape, VERMILLION, WIDTH,
+    render_svg, stroke, text_width,
 };
 use super::values::check;
 
@@ -52,7 +52,7 @@ pub fn render(columns: &[Column], lines: &[Line]) -> Result<String, PlotError> {
     let (top, inside) = (40.0, heights.iter().sum::<f64>() + 8.0);
     let height = top + inside + X_BARE + 4.0;
     let wide = (WIDTH - LABELS - 8.0) / columns.len() as f64;
-    paint(height, |canvas| {
+    render_svg(height, |canvas| {
         let middle = |row: usize| top + 4.0 + heights[..row].iter().sum::<f64>() + heights[row] / 2.0;
         for (row, label) in labels.iter().enumerate() {
             for (at, text) in label.iter().enumerate() {
@@ -112,13 +112,13 @@ pub fn render(columns: &[Column], lines: &[Line]) -> Result<String, PlotError> {
                                 stroke(colour, 1.6),
                             )?;
                         }
-                        let look = MarkerStyle { colour, shape: Shape::Circle, hollow: false };
+                        let style = MarkerStyle { colour, shape: Shape::Circle, hollow: false };
                         canvas.marker(
                             (x(*value), middle(row)),
                             4.2,
-                            MarkerStyle { colour: WHITE, ..look },
+                            MarkerStyle { colour: WHITE, ..style },
                         )?;
-                        canvas.marker((x(*value), middle(row)), 3.6, look)?;
+                        canvas.marker((x(*value), middle(row)), 3.6, style)?;
                     }
                 }
             }

@@ -1,4 +1,4 @@
-//! What each look means → keys in lines above a picture.
+//! What each style means → keys in lines above a picture.
 
 use plotters::style::{Color, RGBColor};
 
@@ -68,11 +68,11 @@ impl Legend {
         for ((key, text), (x, y)) in self.0.iter().zip(self.layout().0) {
             let (left, right, middle) = (x, x + KEY - 6.0, x + KEY / 2.0 - 3.0);
             match *key {
-                Key::Marker(look, radius) => canvas.marker((middle, y), radius, look)?,
-                Key::Curve(look) => {
-                    canvas.line(&[(left, y), (right, y)], stroke(look.colour, 1.6))?;
-                    canvas.line(&[(middle, y - 7.0), (middle, y + 7.0)], stroke(look.colour, 1.4))?;
-                    canvas.marker((middle, y), 3.6, look)?;
+                Key::Marker(style, radius) => canvas.marker((middle, y), radius, style)?,
+                Key::Curve(style) => {
+                    canvas.line(&[(left, y), (right, y)], stroke(style.colour, 1.6))?;
+                    canvas.line(&[(middle, y - 7.0), (middle, y + 7.0)], stroke(style.colour, 1.4))?;
+                    canvas.marker((middle, y), 3.6, style)?;
                 }
                 Key::Line(colour, width) => canvas.line(&[(left, y), (right, y)], stroke(colour, width))?,
                 Key::Dashes => canvas.dashes((left, y), (right, y), stroke(GREY, 1.2))?,

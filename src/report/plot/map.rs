@@ -3,10 +3,10 @@
 use super::super::figure_rows::{MapPoint, MapRow};
 use super::axes::{Axis, Panel, Rect, X_LABELS, around};
 use super::canvas::plot_error;
-use super::canvas::{INK, MarkerStyle, PlotError, Shape, WIDTH, paint};
+use super::canvas::{INK, MarkerStyle, PlotError, Shape, WIDTH, render_svg};
 use super::legend::{Key, Legend};
 use super::values::{check, distinct};
-use crate::settings::MOST_LISTED;
+use crate::settings::MAX_LISTED;
 
 /// Radius of a sensor's marker.
 pub const SENSOR: f64 = 2.5;
@@ -49,7 +49,7 @@ impl Groups {
     }
 
     /// How a point is drawn, and how large.
-    pub fn look(&self, row: &MapRow) -> (MarkerStyle, f64) {
+    pub fn style(&self, row: &MapRow) -> (MarkerStyle, f64) {
         match row.kind {
             MapPoint::Joint => (joint(), JOINT),
             MapPoint::Sensor => {
@@ -59,15 +59,15 @@ impl Groups {
         }
     }
 
-    /// What the looks mean.
+    /// What the styles mean.
     pub fn legend(&self, rows: &[MapRow], grouping: Grouping) -> Legend {
         let mut legend = Legend::default();
         let what = if grouping == Grouping::Parts { "part" } else { "cluster" };
-        for (at, group) in self.0.iter().enumerate().take(MOST_LISTED) {
+        for (at, group) in self.0.iter().enumerate().take(MAX_LISTED) {
             legend.add(Key::Marker(MarkerStyle::of(at), 4.0), format!("{what} {group}"));
         }
-        if let Some(more @ 1..) = self.0.len().checked_sub(MOST_LISTED) {
-            legend.add(Key::Marker(MarkerStyle::of(MOST_LISTED), 4.0), format!("and {more} more"));
+        if let Some(more @ 1..) = self.0.len().checked_sub(MAX_LISTED) {
+            legend.add(Key::Marker(MarkerStyle::of(MAX_LISTED), 4.0), format!("and {more} more"));
         }
         if rows.iter().any(|row| row.kind == MapPoint::Joint) {
             legend.add(Key::Marker(joint(), JOINT), "estimated joint");
@@ -101,14 +101,14 @@ pub fn render(rows: &[MapRow], grouping: Grouping) -> Result<String, PlotError> 
         let (middle, half) = ((y.start + y.end) / 2.0, (x.end - x.start) / 2.0 * 120.0 / wide);
         (middle - half..middle + half, 120.0)
     };
-    paint(top + high + X_LABELS + 4.0, |canvas| {
+    render_svg(top + high + X_LABELS + 4.0, |canvas| {
         legend.render(canvas)?;
         let outer = Rect { left, top, width, height: high + X_LABELS };
         let (x, y) = (Axis::new("x₁ / bit", x, 6), Axis::new("x₂ / bit", y, 6));
         let panel = Panel::render(canvas, outer, labels, &x, &y)?;
         for row in shuffled(rows) {
-            let (look, radius) = groups.look(row);
-            canvas.marker(panel.at(row.x1, row.x2), radius, look)?;
+            let (style, radius) = groups.style(row);
+            canvas.marker(panel.at(row.x1, row.x2), radius, style)?;
         }
         Ok(())
     })

@@ -58,13 +58,13 @@ pub fn render(folder: &Path) -> Result<Vec<String>, FileError> {
 
 fn picture<T: DeserializeOwned>(
     csv: &Path,
-    draw: impl FnOnce(&[T]) -> Result<String, PlotError>,
+    render: impl FnOnce(&[T]) -> Result<String, PlotError>,
 ) -> Result<String, FileError> {
     let rows = read_rows(csv)?;
     if rows.is_empty() {
         return Err(FileError::new(csv, "has no rows"));
     }
-    draw(&rows).map_err(|PlotError(message)| FileError::new(csv, message))
+    render(&rows).map_err(|PlotError(message)| FileError::new(csv, message))
 }
 
 #[cfg(test)]

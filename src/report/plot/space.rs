@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::super::figure_rows::MapRow;
 use super::axes::{Axis, around, plain};
 use super::canvas::{
-    Anchor, Canvas, FONT, GREY, INK, PALE, Place, PlotError, Rendered, WIDTH, paint, stroke, text_width,
+    Anchor, Canvas, FONT, GREY, INK, PALE, Place, PlotError, Rendered, WIDTH, render_svg, stroke, text_width,
 };
 use super::map::{Grouping, Groups};
 
@@ -53,7 +53,7 @@ pub fn render(rows: &[MapRow], grouping: Grouping) -> Result<String, PlotError> 
         middle - side / 2.0..middle + side / 2.0
     });
     let share = |axis: usize, value: f64| (value - cube[axis].start) / side - 0.5;
-    paint(top + HIGH * TURNS.len() as f64, |canvas| {
+    render_svg(top + HIGH * TURNS.len() as f64, |canvas| {
         legend.render(canvas)?;
         for (at, turn) in TURNS.iter().enumerate() {
             let view = View {
@@ -72,8 +72,8 @@ pub fn render(rows: &[MapRow], grouping: Grouping) -> Result<String, PlotError> 
             // What is near is drawn last.
             seen.sort_by(|((_, a), _), ((_, b), _)| a.total_cmp(b));
             for ((place, near), row) in seen {
-                let (look, radius) = groups.look(row);
-                canvas.marker(place, radius * (1.0 + 0.25 * near), look)?;
+                let (style, radius) = groups.style(row);
+                canvas.marker(place, radius * (1.0 + 0.25 * near), style)?;
             }
         }
         Ok(())

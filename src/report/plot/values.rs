@@ -1,7 +1,7 @@
 //! Check values before they are placed on a picture.
 
 use super::canvas::{PlotError, plot_error};
-use crate::settings::MOST_LISTED;
+use crate::settings::MAX_LISTED;
 
 /// Whether all values can be placed on a picture.
 pub fn check(
@@ -24,10 +24,10 @@ pub fn distinct<T: PartialOrd>(values: impl IntoIterator<Item = T>) -> Vec<T> {
     values
 }
 
-/// [`distinct`] values that each need a panel, a look or a column of their own.
+/// [`distinct`] values that each need a panel, a style or a column of their own.
 pub fn few<T: PartialOrd>(what: &str, values: impl IntoIterator<Item = T>) -> Result<Vec<T>, PlotError> {
     let values = distinct(values);
-    if values.len() > MOST_LISTED {
+    if values.len() > MAX_LISTED {
         return plot_error(format!(
             "has {} different values of {what}, more than a picture can show",
             values.len()

@@ -9,7 +9,7 @@ use nalgebra::{DMatrix, DVector};
 use crate::numerics::rng::Stream;
 use crate::stages::body_map::BodyMap;
 use crate::stages::mixture::assignments::log_densities;
-use crate::stages::mixture::{Gaussian, Points, descend};
+use crate::stages::mixture::{Gaussian, Points, lloyd};
 
 /// Added to the variances of every component, in units of the mean variance of the map's coordinates, so
 /// that a component of few points has a density. scikit-learn's default is as large, but absolute: its
@@ -20,10 +20,10 @@ const RIDGE: f64 = 1e-6;
 const TOLERANCE: f64 = 1e-8;
 
 /// Rounds after which it ends in any case.
-const ROUNDS: usize = 1000;
+const MAX_ITERATIONS: usize = 1000;
 
 /// A component that is responsible for less than this, in points, is dropped: it is for none at all.
-const LEAST_WEIGHT: f64 = 1e-12;
+const MIN_WEIGHT: f64 = 1e-12;
 
 /// A fitted mixture, as far as it is used.
 #[derive(Debug, Clone, PartialEq)]
@@ -52,7 +52,7 @@ pub fn gmm(map: &BodyMap, clusters: usize, restarts: usize, rng: &mut Stream) ->
     let ridge = ridge(map);
     let mut best: Option<MixtureFit> = None;
     for _ in 0..restarts.max(1) {
-        let start = descend(&points, clusters, rng).labels;
+        let start = lloyd(&points, clusters, rng).labels;
         let fit = climb(&points, ridge, &start)
             .unwrap_or(MixtureFit { labels: start, log_likelihood: f64::INFINITY });
         if best.as_ref().is_none_or(|best| fit.log_likelihood > best.log_likelihood) {
@@ -80,7 +80,7 @@ fn climb(points: &Points, ridge: f64, labels: &[usize]) -> Option<MixtureFit> {
     let member = |k: usize| labels.iter().map(|label| f64::from(u8::from(*label == k))).collect();
     let mut responsibilities: Vec<Vec<f64>> = (0..clusters).map(member).collect();
     let mut log_likelihood = f64::NEG_INFINITY;
-    for _ in 0..ROUNDS {
+    for _ in 0..MAX_ITERATIONS {
         let components = maximise(points, &responsibilities, ridge)?;
         let before = log_likelihood;
         (responsibilities, log_likelihood) = expect(points, &components);
@@ -101,7 +101,7 @@ fn maximise(points: &Points, responsibilities: &[Vec<f64>], ridge: f64) -> Optio
     responsibilities
         .iter()
         .zip(weights)
-        .filter(|(_, weight)| *weight > LEAST_WEIGHT)
+        .filter(|(_, weight)| *weight > MIN_WEIGHT)
         .map(|(shares, weight)| {
             let (mean, mut covariance) = moments(points, shares, weight);
             for k in 0..points.dims {

@@ -25,16 +25,16 @@ impl Distances {
 }
 
 /// Most sensors whose distances are computed: a matrix of 3.2 GB.
-pub const MOST_SENSORS: usize = 20_000;
+pub const MAX_SENSORS: usize = 20_000;
 
 /// Most levels for which joint counts by bit planes, (N − 1)² passes over T bits, beat one pass over T
 /// symbols.
-const MOST_PLANES: usize = 10;
+const MAX_LEVELS_FOR_PLANES: usize = 10;
 
 /// The information metric between all pairs of sensors, in bits.
 pub fn information_metric(symbols: &Symbols) -> Distances {
     let (sensors, levels) = (symbols.sensors(), symbols.levels);
-    let planes = (levels <= MOST_PLANES).then(|| BitPlanes::new(symbols));
+    let planes = (levels <= MAX_LEVELS_FOR_PLANES).then(|| BitPlanes::new(symbols));
     let marginals = match &planes {
         Some(planes) => planes.marginals(symbols),
         None => symbols.series().map(|series| histogram(series, levels)).collect(),

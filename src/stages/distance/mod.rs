@@ -5,4 +5,4 @@
 mod bit_planes;
 mod information_metric;
 
-pub use self::information_metric::{Distances, MOST_SENSORS, information_metric};
+pub use self::information_metric::{Distances, MAX_SENSORS, information_metric};

@@ -18,7 +18,7 @@ type Block = [f64; BLOCK];
 const NEGLIGIBLE: f64 = -45.0;
 
 /// z_i ~ Categorical ∝ π_k N(x_i; μ_k, Σ_k), in place of the labels of before.
-pub fn draw(
+pub fn draw_labels(
     points: &Points,
     gaussians: &[Gaussian],
     log_weights: &[f64],
@@ -27,13 +27,13 @@ pub fn draw(
 ) {
     vectorised(
         #[inline(always)]
-        || draw_in_lanes(points, gaussians, log_weights, labels, rng),
+        || draw_labels_in_lanes(points, gaussians, log_weights, labels, rng),
     );
 }
 
-/// [`draw`], by any vector instructions.
+/// [`draw_labels`], by any vector instructions.
 #[inline(always)]
-fn draw_in_lanes(
+fn draw_labels_in_lanes(
     points: &Points,
     gaussians: &[Gaussian],
     log_weights: &[f64],
@@ -184,8 +184,14 @@ mod tests {
             let gaussians: Vec<Gaussian> = (0..5).map(|_| gaussian(dims, &mut rng)).collect();
             let weights = [-1.0, -2.0, -0.5, -4.0, -200.0];
             let (mut found, mut portable) = (vec![0; points.count], vec![0; points.count]);
-            draw(&points, &gaussians, &weights, &mut found, &mut stream(1, 1, "labels", 1));
-            draw_in_lanes(&points, &gaussians, &weights, &mut portable, &mut stream(1, 1, "labels", 1));
+            draw_labels(&points, &gaussians, &weights, &mut found, &mut stream(1, 1, "labels", 1));
+            draw_labels_in_lanes(
+                &points,
+                &gaussians,
+                &weights,
+                &mut portable,
+                &mut stream(1, 1, "labels", 1),
+            );
             assert_eq!(found, portable, "d = {dims}");
         }
     }

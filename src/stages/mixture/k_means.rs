@@ -13,7 +13,7 @@ use crate::numerics::rng::Stream;
 use crate::stages::body_map::BodyMap;
 
 /// Rounds of Lloyd's algorithm after which it ends in any case.
-const ROUNDS: usize = 1000;
+const MAX_ITERATIONS: usize = 1000;
 
 /// Points in clusters, each point in that of the nearest mean.
 #[derive(Debug, Clone, PartialEq)]
@@ -28,18 +28,18 @@ pub struct Partition {
 pub fn k_means(map: &BodyMap, clusters: usize, restarts: usize, rng: &mut Stream) -> Partition {
     let points = Points::new(map);
     (0..restarts.max(1))
-        .map(|_| descend(&points, clusters, rng))
+        .map(|_| lloyd(&points, clusters, rng))
         .min_by(|a, b| a.inertia.total_cmp(&b.inertia))
         .expect("there is at least one start")
 }
 
 /// Lloyd's algorithm from one start: assigns points to the nearest centre and moves centres to the means of
 /// their points until no label changes.
-pub fn descend(points: &Points, clusters: usize, rng: &mut impl Rng) -> Partition {
+pub fn lloyd(points: &Points, clusters: usize, rng: &mut impl Rng) -> Partition {
     let mut centres = starts(points, clusters, rng);
     let mut labels = Vec::new();
     let mut inertia = 0.0;
-    for _ in 0..ROUNDS {
+    for _ in 0..MAX_ITERATIONS {
         let nearest = (0..points.count).map(|i| nearest(points.row(i), &centres));
         let (assigned, squares): (Vec<usize>, Vec<f64>) = nearest.unzip();
         inertia = squares.iter().fold(0.0, |sum, square| sum + square);
@@ -138,7 +138,7 @@ mod tests {
     #[test]
     fn the_inertia_is_that_of_the_labels() {
         let points = Points::from_rows(1, vec![0.0, 1.0, 10.0, 14.0]);
-        let found = descend(&points, 2, &mut stream(1, 1, "k-means", 0));
+        let found = lloyd(&points, 2, &mut stream(1, 1, "k-means", 0));
         assert_eq!(found.inertia, 0.5 + 8.0);
         assert_eq!(found.labels[0], found.labels[1]);
         assert_eq!(found.labels[2], found.labels[3]);

@@ -12,7 +12,7 @@ use rand_distr::{ChiSquared, StandardNormal};
 
 use super::augmented::Augmented;
 use super::gaussian::{Gaussian, Rounding};
-use super::points::Statistics;
+use super::points::SufficientStatistics;
 
 /// NIW(m, k, Ψ, ν): Σ ~ inverse-Wishart(Ψ, ν), μ ~ N(m, Σ / k).
 #[derive(Debug, Clone)]
@@ -22,14 +22,19 @@ pub struct NormalInverseWishart {
     /// U, upper triangular, with Ψ = Uᵀ U.
     scale: Augmented,
     /// ν > d − 1.
-    pub freedom: f64,
+    pub degrees_of_freedom: f64,
 }
 
 impl NormalInverseWishart {
     /// From m, k, Ψ and ν; `None` if Ψ is not positive definite.
-    pub fn new(mean: DVector<f64>, mean_weight: f64, scale: DMatrix<f64>, freedom: f64) -> Option<Self> {
+    pub fn new(
+        mean: DVector<f64>,
+        mean_weight: f64,
+        scale: DMatrix<f64>,
+        degrees_of_freedom: f64,
+    ) -> Option<Self> {
         let dims = mean.len();
-        debug_assert!(mean_weight > 0.0 && freedom > dims as f64 - 1.0);
+        debug_assert!(mean_weight > 0.0 && degrees_of_freedom > dims as f64 - 1.0);
         let mean = mean.push(1.0);
         let mut moments = Augmented::zeros(dims);
         for i in 0..=dims {
@@ -38,13 +43,13 @@ impl NormalInverseWishart {
                 moments.row_mut(i)[j] = scale + mean_weight * mean[i] * mean[j];
             }
         }
-        Self::from_moments(moments, freedom)
+        Self::from_moments(moments, degrees_of_freedom)
     }
 
-    fn from_moments(moments: Augmented, freedom: f64) -> Option<Self> {
+    fn from_moments(moments: Augmented, degrees_of_freedom: f64) -> Option<Self> {
         let mut scale = moments.clone();
         scale.eliminate_border();
-        Some(Self { moments, scale: scale.factor()?, freedom })
+        Some(Self { moments, scale: scale.factor()?, degrees_of_freedom })
     }
 
     /// m.
@@ -62,10 +67,10 @@ impl NormalInverseWishart {
     ///
     /// # Errors
     /// [`Rounding`] if its scale, which is positive definite, is not so in floating point.
-    pub fn posterior(&self, data: &Statistics) -> Result<Self, Rounding> {
+    pub fn posterior(&self, data: &SufficientStatistics) -> Result<Self, Rounding> {
         let mut moments = self.moments.clone();
         moments.add(&data.moments);
-        Self::from_moments(moments, self.freedom + data.count()).ok_or(Rounding)
+        Self::from_moments(moments, self.degrees_of_freedom + data.count()).ok_or(Rounding)
     }
 
     /// Draws (μ, Σ).
@@ -78,8 +83,8 @@ impl NormalInverseWishart {
         let mut columns = Augmented::zeros(dims);
         for i in 0..dims {
             let row = columns.row_mut(i);
-            let freedom = self.freedom - dims as f64 + (i + 1) as f64;
-            let square: f64 = rng.sample(ChiSquared::new(freedom).expect("ν > d − 1"));
+            let degrees_of_freedom = self.degrees_of_freedom - dims as f64 + (i + 1) as f64;
+            let square: f64 = rng.sample(ChiSquared::new(degrees_of_freedom).expect("ν > d − 1"));
             // The smallest normal number stands for an underflow to zero, which has no logarithm.
             row[i] = square.max(f64::MIN_POSITIVE).sqrt();
             row[i + 1..dims].fill_with(|| rng.sample(StandardNormal));
@@ -104,7 +109,7 @@ impl NormalInverseWishart {
     ///
     /// # Errors
     /// As for [`Self::posterior`].
-    pub fn log_marginal(&self, data: &Statistics) -> Result<f64, Rounding> {
+    pub fn log_marginal(&self, data: &SufficientStatistics) -> Result<f64, Rounding> {
         let posterior = self.posterior(data)?;
         let dims = self.scale.dims as f64;
         let weights = 0.5 * dims * (self.mean_weight() / posterior.mean_weight()).ln();
@@ -115,8 +120,8 @@ impl NormalInverseWishart {
     fn log_mass(&self) -> f64 {
         let log_det = 2.0 * self.scale.log_diagonal();
         let log_gamma: f64 =
-            (0..self.scale.dims).map(|i| libm::lgamma((self.freedom - i as f64) / 2.0)).sum();
-        0.5 * self.freedom * log_det - log_gamma
+            (0..self.scale.dims).map(|i| libm::lgamma((self.degrees_of_freedom - i as f64) / 2.0)).sum();
+        0.5 * self.degrees_of_freedom * log_det - log_gamma
     }
 }
 

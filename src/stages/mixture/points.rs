@@ -72,18 +72,18 @@ impl Points {
     /// Covariance of all points (d × d), with divisor n − 1.
     pub fn covariance(&self) -> DMatrix<f64> {
         let all: Vec<usize> = (0..self.count).collect();
-        Statistics::of(self, &all).scatter() / (self.count.max(2) - 1) as f64
+        SufficientStatistics::of(self, &all).scatter() / (self.count.max(2) - 1) as f64
     }
 }
 
 /// Sufficient statistics of a set of points for a Gaussian: count, sum, and sum of outer products.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Statistics {
+pub struct SufficientStatistics {
     /// Σ (x, 1)(x, 1)ᵀ.
     pub moments: Augmented,
 }
 
-impl Statistics {
+impl SufficientStatistics {
     /// Of no points in d dimensions.
     pub fn new(dims: usize) -> Self {
         Self { moments: Augmented::zeros(dims) }

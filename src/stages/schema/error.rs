@@ -3,14 +3,14 @@
 use crate::stages::mixture::Rounding as RoundingError;
 
 /// Most numbers in the matrices of all components together, of which a chain holds a few: 80 MB each.
-const MOST_NUMBERS: usize = 10_000_000;
+const MAX_MATRIX_ENTRIES: usize = 10_000_000;
 
 /// Most labels in all draws that are kept, 8 GB.
-pub const MOST_LABELS: usize = 1_000_000_000;
+pub const MAX_LABELS: usize = 1_000_000_000;
 
 /// Whether the matrices of so many components in so many dimensions fit the memory.
-pub fn fits(components: usize, dims: usize) -> bool {
-    dims.saturating_mul(dims).saturating_mul(components) <= MOST_NUMBERS
+pub fn matrices_fit(components: usize, dims: usize) -> bool {
+    dims.saturating_mul(dims).saturating_mul(components) <= MAX_MATRIX_ENTRIES
 }
 
 /// A body map that the mixture cannot be sampled on.

@@ -15,7 +15,7 @@ use super::error::InferenceError;
 use super::joints;
 use super::settings::{EdgeWeight, Model, Schema, Start};
 use crate::stages::mixture::{
-    Augmented, Gaussian, NormalInverseWishart, Points, Statistics, assignments, descend,
+    Augmented, Gaussian, NormalInverseWishart, Points, SufficientStatistics, assignments, lloyd,
 };
 use crate::stages::tree::{Edge, prim};
 
@@ -42,8 +42,8 @@ pub struct Chain<'a> {
     pub log_weights: Vec<f64>,
     /// q and C. Empty for a DPGMM.
     pub joints: Vec<Joint>,
-    /// Statistics of each component's points.
-    statistics: Vec<Statistics>,
+    /// SufficientStatistics of each component's points.
+    statistics: Vec<SufficientStatistics>,
 }
 
 impl<'a> Chain<'a> {
@@ -61,7 +61,7 @@ impl<'a> Chain<'a> {
         let components = settings.components;
         let labels = match settings.start {
             Start::Uniform => (0..points.count).map(|_| rng.random_range(0..components)).collect(),
-            Start::KMeans => descend(points, components, rng).labels,
+            Start::KMeans => lloyd(points, components, rng).labels,
             Start::Single => vec![0; points.count],
         };
         let mut chain = Self {
@@ -75,7 +75,7 @@ impl<'a> Chain<'a> {
             joints: Vec::new(),
             statistics: Vec::new(),
         };
-        chain.count();
+        chain.update_statistics();
         chain.draw_given_labels(rng)?;
         Ok(chain)
     }
@@ -83,7 +83,7 @@ impl<'a> Chain<'a> {
     /// One sweep.
     pub fn sweep(&mut self, rng: &mut impl Rng) -> Result<(), InferenceError> {
         self.draw_labels(rng);
-        self.count();
+        self.update_statistics();
         self.drop_inactive_joints();
         self.draw_given_labels(rng)
     }
@@ -99,16 +99,17 @@ impl<'a> Chain<'a> {
 
     /// z_i ~ Categorical ∝ π_k N(x_i; μ_k, Σ_k) (equation 15).
     fn draw_labels(&mut self, rng: &mut impl Rng) {
-        assignments::draw(self.points, &self.gaussians, &self.log_weights, &mut self.labels, rng);
+        assignments::draw_labels(self.points, &self.gaussians, &self.log_weights, &mut self.labels, rng);
     }
 
     /// Brings the statistics up to date with the labels.
-    fn count(&mut self) {
+    fn update_statistics(&mut self) {
         let mut members = vec![Vec::new(); self.settings.components];
         for (i, &label) in self.labels.iter().enumerate() {
             members[label].push(i);
         }
-        self.statistics = members.iter().map(|members| Statistics::of(self.points, members)).collect();
+        self.statistics =
+            members.iter().map(|members| SufficientStatistics::of(self.points, members)).collect();
     }
 
     /// Drops the joints of components that are no longer active: a joint is drawn "for each activated
@@ -127,7 +128,7 @@ impl<'a> Chain<'a> {
             data[edge.child].add(position.as_slice());
             data[edge.parent].add(position.as_slice());
         }
-        let draw = |data: &Statistics| Ok(self.prior.posterior(data)?.draw(rng));
+        let draw = |data: &SufficientStatistics| Ok(self.prior.posterior(data)?.draw(rng));
         self.gaussians = data.iter().map(draw).collect::<Result<_, InferenceError>>()?;
         Ok(())
     }
@@ -136,7 +137,7 @@ impl<'a> Chain<'a> {
     /// no update needs.
     fn draw_weights(&mut self, rng: &mut impl Rng) {
         let share = self.settings.concentration / self.settings.components as f64;
-        let draw = |data: &Statistics| {
+        let draw = |data: &SufficientStatistics| {
             let gamma = Gamma::new(share + data.count(), 1.0).expect("γ > 0");
             rng.sample::<f64, _>(gamma).ln()
         };
@@ -236,7 +237,7 @@ impl<'a> Chain<'a> {
         let share = concentration / self.settings.components as f64;
         let labels = libm::lgamma(concentration) - libm::lgamma(concentration + self.points.count as f64);
         let occupied = self.statistics.iter().filter(|data| data.count() > 0.0);
-        let component = |data: &Statistics| {
+        let component = |data: &SufficientStatistics| {
             let count = libm::lgamma(share + data.count()) - libm::lgamma(share);
             Ok(count + self.prior.log_marginal(data)?)
         };
@@ -244,7 +245,7 @@ impl<'a> Chain<'a> {
     }
 }
 
-fn is_active(data: &Statistics) -> bool {
+fn is_active(data: &SufficientStatistics) -> bool {
     data.count() > 1.0
 }
 

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::draw::Draw;
-use super::error::{InferenceError, MOST_LABELS, fits};
+use super::error::{InferenceError, MAX_LABELS, matrices_fit};
 use super::gibbs::Chain;
 use super::prior::fraley_raftery;
 use super::settings::{Keep, Model, Schema};
@@ -31,10 +31,10 @@ pub fn infer(
     if count <= dims {
         return Err(InferenceError::Flat { points: count, dims });
     }
-    if !fits(components, dims) {
+    if !matrices_fit(components, dims) {
         return Err(InferenceError::TooManyNumbers { components, dims });
     }
-    if draws.saturating_mul(count) > MOST_LABELS {
+    if draws.saturating_mul(count) > MAX_LABELS {
         return Err(InferenceError::TooManyLabels { draws, points: count });
     }
     let points = Points::new(map);

@@ -12,7 +12,7 @@ mod prior;
 mod settings;
 
 pub use self::draw::{Draw, best, one_part};
-pub use self::error::{InferenceError, fits};
+pub use self::error::{InferenceError, matrices_fit};
 pub use self::gibbs::{Chain, Joint};
 pub use self::infer::infer;
 pub use self::joints::collapsed_cost;

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::error::MOST_LABELS;
+use super::error::MAX_LABELS;
 use crate::numerics::range::{Checked, check, count, moderate};
 
 /// The mixture to sample from.
@@ -121,7 +121,7 @@ impl Schema {
         check(
             "schema.chains * (schema.sweeps - schema.burn_in)",
             draws,
-            draws <= 1_000_000 && draws * sensors <= MOST_LABELS,
+            draws <= 1_000_000 && draws * sensors <= MAX_LABELS,
             "at most 1000000 draws where all are kept, and at most 1000000000 labels with all sensors",
         )
     }

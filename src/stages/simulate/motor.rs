@@ -27,7 +27,7 @@ impl Motor {
     }
 
     /// Draws for each joint whether it moves in the epoch that begins, and where to.
-    pub fn draw(&mut self, world: &mut World, motion: &Motion, rng: &mut Stream) {
+    pub fn draw_targets(&mut self, world: &mut World, motion: &Motion, rng: &mut Stream) {
         for (joint, target) in self.targets.iter_mut().enumerate() {
             *target = rng.random_bool(1.0 - motion.coordination).then(|| {
                 let mut angle = || rng.random_range(-PI..=PI);
@@ -88,7 +88,7 @@ mod tests {
             scene.motion.targets = targets;
             let mut motor = Motor::new(agent.joints.len());
             let rng = &mut stream(1, 1, "motion", 0);
-            motor.draw(&mut World::new(&agent, &scene.physics), &scene.motion, rng);
+            motor.draw_targets(&mut World::new(&agent, &scene.physics), &scene.motion, rng);
             (motor.targets.iter().map(|target| target.expect("p = 0")).collect::<Vec<_>>(), rng.clone())
         };
         // After the draw of whether the joint moves, a draw for each axis or one for both.

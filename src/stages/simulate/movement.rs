@@ -59,7 +59,7 @@ pub fn simulate(
             break;
         }
         if step > 0 && step % motion.epoch == 0 {
-            motor.draw(&mut world, motion, rng);
+            motor.draw_targets(&mut world, motion, rng);
         }
         motor.apply(&mut world, motion);
         world.step()?;

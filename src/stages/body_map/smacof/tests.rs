@@ -59,7 +59,7 @@ fn stress_is_less_than_the_classical_map_s_and_hardly_changes_any_more() {
         assert!(found.stress < 0.9 * found.start, "{fit:?}: {found:?}");
         assert!(found.dimension == 3 && map.dims == 3 && map.points() == 40);
         let mut state = Majorisation::new(&distances, map, fit);
-        if found.steps < STEPS && fit == Fit::Metric {
+        if found.steps < MAX_STEPS && fit == Fit::Metric {
             assert!((state.stress() - found.stress).abs() < 1e-12);
             let before = state.raw_stress();
             state.step();

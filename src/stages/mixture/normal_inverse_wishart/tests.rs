@@ -85,8 +85,8 @@ fn bartlett_s_draws_are_those_of_sums_of_outer_products() {
 }
 
 /// Data of one component in one dimension, with a joint.
-fn data(with_joint: bool) -> Statistics {
-    let mut data = Statistics::new(1);
+fn data(with_joint: bool) -> SufficientStatistics {
+    let mut data = SufficientStatistics::new(1);
     [0.3, 1.1, 0.7].iter().for_each(|x| data.add(&[*x]));
     if with_joint {
         data.add(&[2.4]);
@@ -127,7 +127,7 @@ fn the_component_s_conditional_agrees_with_the_posterior_on_a_grid() {
     let (mu_distribution, lambda_distribution) =
         (distribution(over_mu, -4.0, 10.0), distribution(over_lambda, 0.0, 12.0));
 
-    let p_values = |freedom: f64, data: &Statistics| {
+    let p_values = |freedom: f64, data: &SufficientStatistics| {
         let prior = NormalInverseWishart::new(
             DVector::from_element(1, mean),
             weight,
@@ -158,9 +158,9 @@ impl NormalInverseWishart {
         let lower = self.scale.upper().transpose();
         let trace = (lower.transpose() * &precision * &lower).trace();
         let offset = gaussian.mean() - self.mean();
-        let wishart = self.log_mass() + 0.5 * (self.freedom - dims - 1.0) * log_det_precision
+        let wishart = self.log_mass() + 0.5 * (self.degrees_of_freedom - dims - 1.0) * log_det_precision
             - 0.5 * trace
-            - 0.5 * self.freedom * dims * std::f64::consts::LN_2
+            - 0.5 * self.degrees_of_freedom * dims * std::f64::consts::LN_2
             - 0.25 * dims * (dims - 1.0) * PI.ln();
         let normal = 0.5 * dims * (self.mean_weight() / (2.0 * PI)).ln() + 0.5 * log_det_precision
             - 0.5 * self.mean_weight() * offset.dot(&(&precision * &offset));
@@ -174,7 +174,7 @@ fn marginal_likelihood_prior_posterior_and_likelihood_agree() {
     let mut rng = stream(1, 1, "bayes", 0);
     let prior = prior(5.5);
     let points: Vec<DVector<f64>> = (0..6).map(|_| standard_normal(3, &mut rng) * 2.0).collect();
-    let mut data = Statistics::new(3);
+    let mut data = SufficientStatistics::new(3);
     points.iter().for_each(|x| data.add(x.as_slice()));
     let posterior = prior.posterior(&data).unwrap();
     for _ in 0..20 {

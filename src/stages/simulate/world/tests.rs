@@ -82,7 +82,7 @@ fn move_about(world: &mut World, scene: &Scene, steps: usize, mut each: impl FnM
     let mut motor = Motor::new(world.joints.len());
     for step in 0..steps {
         if step % scene.motion.epoch == 0 {
-            motor.draw(world, &scene.motion, &mut rng);
+            motor.draw_targets(world, &scene.motion, &mut rng);
         }
         motor.apply(world, &scene.motion);
         world.step().unwrap();
@@ -257,7 +257,7 @@ fn lock_z_score(drawn: f64, claimed: f64) -> f64 {
     let epochs = 20_000;
     let mut locked = 0;
     for _ in 0..epochs {
-        motor.draw(&mut world, &scene.motion, &mut rng);
+        motor.draw_targets(&mut world, &scene.motion, &mut rng);
         locked += (0..4).filter(|&joint| motor.is_locked(joint)).count();
     }
     let n = 4.0 * f64::from(epochs);

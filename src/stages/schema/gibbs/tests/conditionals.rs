@@ -44,7 +44,7 @@ fn weights_follow_the_dirichlet_of_equation_19() {
     let mut rng = stream(2, 1, "weights", 0);
     let mut chain = start(&points, &prior, &settings, &mut rng);
     chain.labels = vec![0, 0, 0, 2, 2];
-    chain.count();
+    chain.update_statistics();
     let draws: Vec<[f64; 3]> = (0..20_000)
         .map(|_| {
             chain.draw_weights(&mut rng);

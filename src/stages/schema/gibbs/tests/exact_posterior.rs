@@ -63,7 +63,7 @@ fn the_log_posterior_of_every_labelling_agrees_with_the_chain_rule() {
     let mut chain = start(&points, &prior, &settings, &mut stream(3, 1, "exact", 0));
     for labels in all_labellings() {
         chain.labels.clone_from(&labels);
-        chain.count();
+        chain.update_statistics();
         let expected = log_joint(&labels, 3.0, settings.concentration);
         assert!((chain.log_posterior().unwrap() - expected).abs() < 1e-10, "{labels:?}");
     }
@@ -87,7 +87,7 @@ fn the_chain_visits_every_partition_as_often_as_the_posterior_says() {
         // Every 25th sweep, by when the chain has forgotten where it was.
         for sweep in 0..200_000 {
             mutant.draw_labels(&mut chain, &mut rng);
-            chain.count();
+            chain.update_statistics();
             chain.draw_given_labels(&mut rng).unwrap();
             if sweep % 25 == 0 {
                 *visits.get_mut(&partition(&chain.labels)).unwrap() += 1.0;

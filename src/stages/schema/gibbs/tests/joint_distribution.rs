@@ -101,7 +101,7 @@ fn sweep(
         statistics: Vec::new(),
     };
     mutant.draw_labels(&mut chain, rng);
-    chain.count();
+    chain.update_statistics();
     let missing = (mutant == Mutant::MissingJoint).then(|| chain.joints.pop()).flatten();
     chain.draw_gaussians(rng).unwrap();
     chain.joints.extend(missing);
