@@ -1,5 +1,5 @@
-//! A synthetic trajectory of full size → the time of the stages from it to the distances, in seconds on all
-//! cores: `cargo bench --bench distance`. `benches/peers/distance.py` says what others take.
+//! Measure the stages from a synthetic trajectory of full size to the distances, in seconds on all cores: `cargo bench
+//! --bench distance`. `benches/peers/distance.py` says what others take.
 
 use std::hint::black_box;
 use std::time::Instant;

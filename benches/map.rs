@@ -1,5 +1,5 @@
-//! Distances → the time to a body map of 15 dimensions, in ms on all threads: `cargo bench --bench map`, with
-//! `-- --large` also for ten times as many sensors.
+//! Measure the time from distances to a body map of 15 dimensions, in ms on all threads: `cargo bench --bench map`,
+//! with `-- --large` also for ten times as many sensors.
 
 use std::time::Instant;
 

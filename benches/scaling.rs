@@ -1,4 +1,4 @@
-//! Sizes of every stage's input → its time and memory, with the fitted exponent beside the expected one:
+//! Measure time and memory of every stage against the size of its input, with the fitted and the expected exponent:
 //! `cargo bench --bench scaling`. Writes benches/scaling.csv, .md and .svg.
 
 use std::error::Error;

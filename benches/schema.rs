@@ -1,4 +1,4 @@
-//! A synthetic body map → the time of one Gibbs sweep, in ms on one thread: `cargo bench --bench schema`.
+//! Measure the time of one Gibbs sweep on a synthetic body map, in ms on one thread: `cargo bench --bench schema`.
 
 #[allow(dead_code, reason = "the truth is of no use here")]
 #[path = "../tests/support/synthetic.rs"]

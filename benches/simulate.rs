@@ -1,5 +1,5 @@
-//! The agent of the paper → the time of its movement and of its tactile sense, in s:
-//! `cargo bench --bench simulate`. `benches/peers/bare_loop.c` is the floor.
+//! Measure the movement of the paper's agent and its tactile sense, in s: `cargo bench --bench simulate`.
+//! `benches/peers/bare_loop.c` is the floor.
 
 use std::time::Instant;
 

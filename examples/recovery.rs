@@ -1,5 +1,5 @@
-//! Body maps drawn from the generative model → success rate against separation and dimensions, as a table
-//! and a picture. Run by `reproduce/evidence.sh`; the argument is the folder to write to.
+//! Measure how often bodies drawn from the generative model are recovered, against separation and dimensions, as a
+//! table and a picture. Run by `reproduce/evidence.sh`; the argument is the folder to write to.
 
 #[path = "../tests/support/synthetic.rs"]
 mod synthetic;

@@ -1,5 +1,5 @@
-//! The command line `bodyschema`: one subcommand a stage. Exit status as `diff` has it: 0 done and every
-//! claim reproduced, 1 some claim not, 2 trouble, 130 interrupted.
+//! Start the command line `bodyschema`, which has one subcommand for each stage. Exit status, as `diff` has it: 0 done
+//! and every claim reproduced, 1 some claim not, 2 an error, 130 interrupted.
 
 use std::process::ExitCode;
 

@@ -1,4 +1,4 @@
-//! The stages composed: settings → body maps, and body maps → scored samples. The file to read first.
+//! Compose the stages: from settings to body maps, and from body maps to evaluated draws. Read this file first.
 
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};

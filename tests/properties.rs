@@ -1,4 +1,4 @@
-//! The information metric is a metric, whatever the symbols; twins that are none are rejected.
+//! Test that the information metric is a metric, whatever the symbols, and that twins that are not are rejected.
 
 use bodyschema::stages::distance::{Distances, information_metric};
 use bodyschema::stages::quantise::Symbols;

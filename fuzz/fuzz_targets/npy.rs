@@ -1,4 +1,5 @@
-//! Any bytes as pressures, symbols, distances and a body map; what is accepted goes through the stages that follow.
+//! Fuzz the readers of pressures, symbols, distances and body maps; what is accepted goes through the stages that
+//! follow.
 
 #![no_main]
 

@@ -1,4 +1,4 @@
-//! Any text as settings; what is accepted goes through every stage, with smaller sizes.
+//! Fuzz the reader of settings; what is accepted goes through every stage, with smaller sizes.
 
 #![no_main]
 

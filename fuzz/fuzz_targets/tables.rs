@@ -1,4 +1,5 @@
-//! The number of sensors, the table of labels and that of the tree, between zero bytes; what is accepted must be a tree.
+//! Fuzz the reader of the truth: the number of sensors, the table of labels and that of the tree, between zero bytes;
+//! what is accepted must be a tree.
 
 #![no_main]
 

@@ -1,4 +1,5 @@
-//! A table, its reference and a manifest, between zero bytes; what can be read must agree with itself.
+//! Fuzz the comparison of results: a table, its reference and a manifest, between zero bytes; what can be read must
+//! agree with itself.
 
 #![no_main]
 

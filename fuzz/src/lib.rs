@@ -1,4 +1,4 @@
-//! Bytes → a file for a reader, and its answer checked: a value to go on with, or one line that says why not.
+//! Give bytes to a reader as a file, and check its answer: a value, or one line that says what is wrong.
 
 use std::error::Error;
 use std::fs;

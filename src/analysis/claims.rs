@@ -1,4 +1,4 @@
-//! Judge each claim of the paper by what an experiment found.
+//! Judge the paper's claims by the values that an experiment gave.
 //!
 //! What the paper says stands in `reproduce/published.toml`, with the range that counts as reproduced; the
 //! program only measures. A claim over several conditions holds if it holds at each that has a value.

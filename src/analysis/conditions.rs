@@ -1,4 +1,4 @@
-//! Records of an experiment → estimates for each of its conditions, with intervals over simulations.
+//! Estimate means and rates for each condition of an experiment, with intervals over simulations.
 
 use super::statistics::{Estimate, Resamples, mean, rate, spread};
 use crate::numerics::rng::stream;

@@ -1,4 +1,4 @@
-//! A claim's measure and a run's evidence → the values that the claim is about, each with its place.
+//! Measure what a claim is about: its values, each with the condition that it belongs to.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! Counts and samples → rates, means, their intervals, and tests.
+//! Estimate rates and means with their intervals, and test for differences.
 
 use rand::{Rng, RngExt};
 use statrs::distribution::{ChiSquared, ContinuousCDF, Normal, StudentsT};

@@ -1,4 +1,4 @@
-//! The command line: one subcommand for each stage, experiment, and look at results.
+//! The command line: one subcommand for each stage and each experiment, and two for finished results.
 
 mod experiments;
 mod options;

@@ -1,4 +1,4 @@
-//! Options that several subcommands share, and settings that are options.
+//! Define options that several subcommands share, and options that set a setting.
 
 use std::path::PathBuf;
 

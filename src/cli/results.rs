@@ -1,4 +1,4 @@
-//! The subcommands that look at finished results: plot, verify.
+//! The subcommands for finished results: plot, verify.
 
 use std::path::PathBuf;
 use std::process::ExitCode;

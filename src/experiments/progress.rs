@@ -1,4 +1,4 @@
-//! Long work → a progress bar on standard error, which shows only on a terminal.
+//! Show the progress of long work on standard error, if that is a terminal.
 
 use std::time::Duration;
 

@@ -1,5 +1,4 @@
-//! A folder of results → whether its files are as they were written; two folders → which files differ, and by
-//! how much.
+//! Verify results: compare a folder with the hashes in its manifest, or with another folder.
 //!
 //! On one class of CPU the same settings and seed give the same bytes. On another, last digits may differ; the
 //! movement, which is chaotic, is then another one, and so is all that follows from it. From one body map on, a

@@ -1,4 +1,4 @@
-//! Finished parts of an experiment or a study → files that an interrupted run goes on from.
+//! Keep finished work of an experiment or a study in files, from which an interrupted run continues.
 //!
 //! A part is taken up only if its file is whole (by its hash) and of the same program, settings and seed, so
 //! that nothing stale or half-written gets into a result.

@@ -1,5 +1,5 @@
-//! Describe a folder of results in `manifest.json`, which two runs of the same program share, and how a run went in
-//! `run.json`, which tells runs apart.
+//! Describe a folder of results in two files: `manifest.json`, equal for two runs of the same program, and `run.json`,
+//! which tells the runs apart.
 
 use std::path::Path;
 use std::time::{Instant, SystemTime};

@@ -1,4 +1,4 @@
-//! Files that NumPy and a spreadsheet open: the input and output of every stage, and the folders of finished runs.
+//! Read and write files that NumPy and a spreadsheet open, and the folders of finished runs.
 
 pub(crate) mod checkpoint;
 mod error;

@@ -1,4 +1,4 @@
-//! Matrices as NumPy's `.npy` files: tactile pressures, symbols, distances, body maps, assignments.
+//! Read and write matrices as NumPy's `.npy` files: pressures, symbols, distances, body maps, assignments.
 
 use std::fs::File;
 use std::io::{self, BufRead, BufReader};

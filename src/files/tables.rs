@@ -1,4 +1,4 @@
-//! Tables as CSV: labels, trees, joint angles, samples.
+//! Read and write tables as CSV: labels, trees, joint angles, draws.
 
 use std::path::Path;
 

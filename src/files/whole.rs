@@ -1,4 +1,4 @@
-//! Write files that appear whole or not at all; read text.
+//! Write files that appear whole or not at all, and read text.
 
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};

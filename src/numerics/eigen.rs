@@ -1,4 +1,4 @@
-//! Symmetric matrix → its largest eigenvalues and their eigenvectors.
+//! Find the largest eigenvalues of a symmetric matrix and their eigenvectors.
 //!
 //! A few of many eigenvalues come from block Lanczos with thick restarts (Wu & Simon, SIAM Journal on Matrix
 //! Analysis and Applications 22, 2000), all sums of which are in a fixed order. faer's own partial

@@ -1,4 +1,4 @@
-//! What every stage computes with: random numbers, vector instructions, eigenvalues, and ranges of settings.
+//! Numerical tools of all stages: random numbers, vector instructions, eigenvalues, partitions, and ranges of settings.
 
 pub(crate) mod eigen;
 pub mod partition;

@@ -1,4 +1,4 @@
-//! Check that a setting lies in its range, and say which one does not.
+//! Check that a setting is in its range, and name the one that is not.
 
 use std::fmt::Debug;
 

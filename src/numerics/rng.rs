@@ -1,4 +1,4 @@
-//! (master seed, simulation, stage, chain) → an independent stream of random numbers.
+//! Derive an independent stream of random numbers from the master seed, the simulation, the stage and the chain.
 //!
 //! A stream depends on nothing else, so neither the number of threads nor the order of work changes a
 //! result, and a stage run by hand repeats what an experiment did in its first simulation.

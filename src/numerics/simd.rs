@@ -1,4 +1,4 @@
-//! A closure → the same, run by the widest vector instructions of this processor.
+//! Run code with the widest vector instructions of this processor.
 
 use pulp::{Arch, Simd, WithSimd};
 

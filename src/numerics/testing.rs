@@ -1,4 +1,4 @@
-//! Statistical tests for the tests: fixed seeds, one level, no retries.
+//! Provide statistical tests for the unit tests: fixed seeds, one significance level, no retries.
 
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 

@@ -1,4 +1,4 @@
-//! What the experiments repeat, `[experiment]`: conditions, simulations, and the master seed.
+//! Settings of the experiments, `[experiment]`: conditions, number of simulations, and the master seed.
 
 use serde::{Deserialize, Serialize};
 

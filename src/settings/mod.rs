@@ -1,4 +1,4 @@
-//! All settings of a run: what each stage owns, composed, with `reproduce/paper.toml` as the one place of defaults.
+//! All settings of a run, composed of those of each stage; their defaults are in `reproduce/paper.toml` alone.
 
 mod error;
 mod experiment;

@@ -1,4 +1,5 @@
-//! Settings → the body: parts, joints and sensor sites; the ground truth of every evaluation lives here.
+//! Build the body from its settings: parts, joints and tactile sensors, with the true part of each sensor and the true
+//! tree.
 //!
 //! Section 5.1 and figure 4: five cylinders, four universal joints, 840 sensors. The figure is all that
 //! the paper says of the geometry, so the morphology and every length are settings (ours).

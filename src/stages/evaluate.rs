@@ -1,4 +1,4 @@
-//! Stage 7: compare a draw with the truth (section 5.2).
+//! Stage 7, `evaluate`: compare a draw with the truth (section 5.2).
 //!
 //! In: a [`Draw`] of the body schema and the [`Truth`]. Out: a [`Score`]: the adjusted Rand index, whether the tree
 //! counts, and whether it is right.

@@ -1,4 +1,7 @@
-//! Stage 3. Tactile pressures → symbols (section 4.1: "integer values between 1 and N", here 0 to N − 1).
+//! Stage 3, `quantise`: turn pressures into symbols (section 4.1).
+//!
+//! In: [`Tactile`] pressures, M × T, in Pa. Out: [`Symbols`], M × T. The paper has "integer values between 1 and N";
+//! here they are 0 to N − 1.
 //!
 //! The paper leaves the levels open. Pressures are heavy-tailed, so that levels of equal width put nearly
 //! every sample into one; the default has a level for no pressure and shares the positive pressures

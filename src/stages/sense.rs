@@ -1,4 +1,6 @@
-//! Stage 2. Trajectory → tactile pressures (equation 27), a pure function that needs no physics engine.
+//! Stage 2, `sense`: compute the pressure on each sensor from the movement of its part (equation 27).
+//!
+//! In: a [`Trajectory`]. Out: [`Tactile`] pressures, M × T, in Pa. It is a pure function and needs no physics engine.
 //!
 //! The paper's fluid has no viscosity: a sensor feels ρ (ṗ · n)² where it moves outward, along its normal
 //! n, and nothing otherwise. The velocity ṗ is the backward difference of its position over Δt, the

@@ -1,4 +1,5 @@
-//! Find the minimum spanning tree of weighted edges by Prim's algorithm (equation 22; Cormen et al.); hold the truth.
+//! Find the minimum spanning tree of weighted edges by Prim's algorithm (equation 22; Cormen et al.), and hold the true
+//! tree.
 
 use serde::{Deserialize, Serialize};
 

@@ -1,4 +1,4 @@
-//! Settings → the same settings with sizes that a test can afford, and every stage run with them.
+//! Run every stage on settings whose sizes are cut to what a test can afford.
 
 use bodyschema::pipeline::{Condition, StageError, cluster_and_score, feel, infer_and_score, map_felt};
 use bodyschema::settings::Settings;

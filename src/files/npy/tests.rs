@@ -1,4 +1,4 @@
-//! Types, orders and versions of `.npy` files, and everything that is wrong with one.
+//! Test types, orders and versions of `.npy` files, and each way in which one can be wrong.
 
 use super::*;
 

@@ -1,4 +1,4 @@
-//! Points of the agent → figure 4: the whole body, and one cylinder close up.
+//! Render figure 4: the whole body, and one part close up.
 
 use std::f64::consts::PI;
 

@@ -1,4 +1,4 @@
-//! Joint angles over time → figure 5: a panel for each p.
+//! Render figure 5: joint angles over time, a panel for each p.
 
 use std::f64::consts::PI;
 

@@ -1,4 +1,4 @@
-//! Ranges of data and a place on a picture → axes there, and where on the picture data lie.
+//! Render axes, and place data between them.
 
 use std::ops::Range;
 

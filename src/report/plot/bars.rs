@@ -1,4 +1,4 @@
-//! Histograms and boxes → figures 7 and 9.
+//! Render figures 7 and 9: histograms of the number of parts, and boxes of the adjusted Rand index.
 
 use plotters::style::{Color, WHITE};
 

@@ -1,4 +1,4 @@
-//! Shapes and words in points → the text of an SVG picture.
+//! Render lines, markers and text as an SVG picture.
 //!
 //! Pictures are as wide as a column of text; a point is a CSS pixel at that width.
 

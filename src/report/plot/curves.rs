@@ -1,4 +1,4 @@
-//! Points of curves → figures 8, 10 and 11: a mean or rate against d or p, with what it rests on.
+//! Render figures 8, 10 and 11: a mean or a rate against d or p, with its interval and sample size.
 
 use std::collections::BTreeSet;
 

@@ -1,4 +1,4 @@
-//! Values of one setting → a picture of what each gives, a line a value and a panel a result.
+//! Render what each value of one setting gives: a line for each value, a panel for each result.
 
 use std::ops::Range;
 

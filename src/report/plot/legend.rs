@@ -1,4 +1,4 @@
-//! What each style means → keys in lines above a picture.
+//! Render the legend above a picture.
 
 use plotters::style::{Color, RGBColor};
 

@@ -1,4 +1,4 @@
-//! Points on a body map of two dimensions → figures 6a and 6c.
+//! Render figures 6a and 6c: a body map of two dimensions.
 
 use super::super::figure_rows::{MapPoint, MapRow};
 use super::axes::{Axis, Panel, Rect, X_LABELS, around};

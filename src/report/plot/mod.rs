@@ -1,4 +1,4 @@
-//! Turn the table of each figure into a picture beside it, from that table alone.
+//! Render a picture of each figure, from its table alone.
 
 mod agent;
 mod angles;

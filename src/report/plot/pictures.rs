@@ -1,4 +1,4 @@
-//! Find the table of every figure in a folder, and write a picture beside each.
+//! Find the table of each figure in a folder, and write a picture beside it.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! Points in three dimensions → figures 6b and 6d, seen from two sides.
+//! Render figures 6b and 6d: a body map of three dimensions, seen from two sides.
 
 use std::ops::Range;
 

@@ -1,5 +1,4 @@
-//! Body map and number of clusters → a label for each sensor, by the three methods that the paper compares
-//! its mixtures with (figure 8a).
+//! Cluster a body map by one of the three methods that the paper compares its mixtures with (section 5.2, figure 8a).
 //!
 //! None of them finds the number of clusters, so all are told it. The results are equal up to rounding for maps
 //! in other units, moved or turned: no method has a constant with a unit.

@@ -1,4 +1,4 @@
-//! Body map → clusters by a Gaussian mixture model: expectation–maximisation from k-means.
+//! Cluster a body map by a Gaussian mixture model, fitted by expectation–maximisation from k-means (section 5.2).
 //!
 //! Dempster, Laird & Rubin (1977), "Maximum likelihood from incomplete data via the EM algorithm". Each
 //! component has its own full covariance. Ours is scikit-learn's `GaussianMixture`, except for the ridge,

@@ -1,4 +1,5 @@
-//! Body map → clusters by Ward's method: the tree of merges, cut where the clusters asked for are left.
+//! Cluster a body map by Ward's method: cut the tree of merges where the wanted number of clusters is left (section
+//! 5.2).
 //!
 //! Ward (1963), "Hierarchical grouping to optimize an objective function". The merges are `kodama`'s, which
 //! are those of SciPy's `linkage(method="ward")`.

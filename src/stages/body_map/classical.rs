@@ -1,8 +1,8 @@
-//! Stage 5. Distances → body map: classical multidimensional scaling (Torgerson; section 4.1).
+//! Make a body map from distances by classical multidimensional scaling (Torgerson; section 4.1).
 //!
 //! The paper says "MDS" and cites Kruskal; which variant it ran is open, and the classical one is our
-//! default. Others start from it ([`crate::stages::body_map::smacof`]). All dimensions come from one eigen-decomposition: a map
-//! of d dimensions is the first d columns of any larger one.
+//! default; [majorisation](crate::stages::body_map::smacof()) starts from it. All dimensions come from one
+//! eigen-decomposition: a map of d dimensions is the first d columns of any larger one.
 
 use faer::MatRef;
 use rayon::prelude::*;

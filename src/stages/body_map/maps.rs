@@ -1,4 +1,5 @@
-//! Stage 5 as an experiment needs it. Distances → a body map for each of its d, by the method of the settings.
+//! Make the body maps of one simulation, one for each number of dimensions, by the method of the settings (section
+//! 4.1).
 
 use super::classical::{ClassicalScaling, MapError};
 use super::coordinates::BodyMap;

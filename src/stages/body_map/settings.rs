@@ -1,4 +1,4 @@
-//! Settings of multidimensional scaling, `[map]`.
+//! Settings of multidimensional scaling, `[map]` (section 4.1).
 
 use serde::{Deserialize, Serialize};
 

@@ -1,4 +1,4 @@
-//! Distances and a body map → a body map of less stress, by majorisation (SMACOF).
+//! Improve a body map step by step, by majorisation (SMACOF), until its stress hardly changes.
 //!
 //! De Leeuw (1977), "Applications of convex analysis to multidimensional scaling"; Borg & Groenen, Modern
 //! Multidimensional Scaling (2nd edition, 2005), chapters 8 and 9. Metric scaling fits the distances within the map

@@ -1,4 +1,5 @@
-//! Count how often each pair of symbols of two sensors occurs together, by one bit for each sample and level.
+//! Count how often two sensors show each pair of symbols at one time, by one bit for each time and level (equations 25
+//! and 26).
 
 use pulp::{Arch, NullaryFnOnce};
 use rayon::prelude::*;

@@ -1,4 +1,4 @@
-//! Stage 4. Symbols → information metric between all pairs of sensors (equations 23 to 26).
+//! Compute the information metric between all pairs of sensors (equations 23 to 26).
 //!
 //! D(X, Y) = H(X|Y) + H(Y|X) in bits. It is 0 where each sensor's symbol tells the other's, so that two
 //! sensors that differ by names of symbols only are at distance 0: a metric up to relabelling.

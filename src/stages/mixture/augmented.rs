@@ -1,5 +1,5 @@
-//! Rows (x, 1) → the sum of their outer products, its Cholesky factor and triangular systems: the small
-//! matrices of the sampler.
+//! Compute with the small matrices of the sampler: sums of outer products, Cholesky factors and triangular systems over
+//! rows (x, 1).
 //!
 //! The 1 is a border: with it, one matrix holds the count, the sum and the outer products of points, and
 //! another the precision of a Gaussian and its pull. Rows are padded to whole chunks of [`LANES`], so that

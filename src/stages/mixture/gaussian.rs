@@ -1,4 +1,4 @@
-//! Hold a Gaussian component, evaluate its density and draw points from it (equation 11).
+//! Hold a Gaussian component, evaluate its density and draw points from it (equations 5 and 11).
 
 use std::f64::consts::PI;
 

@@ -1,4 +1,4 @@
-//! Body map → clusters by k-means: Lloyd's algorithm from the best of several k-means++ starts.
+//! Cluster points by k-means: Lloyd's algorithm from the best of several k-means++ starts (section 5.2).
 //!
 //! Lloyd (1982), "Least squares quantization in PCM"; Arthur & Vassilvitskii (2007), "k-means++: the
 //! advantages of careful seeding". Ours is scikit-learn's with `tol=0`, except that it sums the squares of

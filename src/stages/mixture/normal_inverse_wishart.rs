@@ -1,5 +1,5 @@
-//! Update and draw the parameters of a Gaussian component under a normal-inverse-Wishart prior (equations 9, 10, 16
-//! and 17).
+//! Update and draw the parameters of a Gaussian component under a normal-inverse-Wishart prior (equations 9, 10, 16 and
+//! 17).
 //!
 //! The paper's Λ ~ W(V₀, ν₀), μ ~ N(m₀, (k₀ Λ)⁻¹) is the normal-inverse-Wishart with scale Ψ₀ = V₀⁻¹.
 //! Formulas: Murphy (2007), "Conjugate Bayesian analysis of the Gaussian distribution", section 9.

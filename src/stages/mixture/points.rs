@@ -1,4 +1,4 @@
-//! Body map → the points x_i of the mixture, laid out for the sampler's two inner loops.
+//! Hold the points x_i of a mixture, laid out in memory for the two inner loops of the sampler.
 
 use nalgebra::{DMatrix, DVector};
 

@@ -1,4 +1,4 @@
-//! Hold a draw of a body schema: the state of a chain that is kept.
+//! Hold a draw: the state of a chain that is kept after a sweep.
 
 use serde::{Deserialize, Serialize};
 

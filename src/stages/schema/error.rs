@@ -1,4 +1,4 @@
-//! Say why a body schema cannot be inferred, before it takes more memory than there is.
+//! Say why a body schema cannot be inferred, before memory for it is asked for.
 
 use crate::stages::mixture::Rounding as RoundingError;
 

@@ -1,4 +1,4 @@
-//! One Gibbs sweep of the DPGMM and of the DPGMM-LJ (algorithm 1, equations 15 to 22).
+//! Run one Gibbs sweep of the DPGMM or the DPGMM-LJ (algorithm 1, equations 15 to 22).
 //!
 //! Order as in the paper: z, then (μ, Σ), then π, then the joints q and the tree C. (μ, Σ) of a component
 //! are drawn together, which has the same target as drawing one given the other. All but the last update

@@ -1,5 +1,5 @@
-//! Two Gaussian components → a latent joint between them, and the weight of that edge (equations 13, 14,
-//! 18 and 22).
+//! Draw the latent joint between two Gaussian components, and weigh that edge of the tree (equations 13, 14, 18 and
+//! 22).
 //!
 //! A joint q is a point that both components generate, so it is drawn from the product of their
 //! densities, and it is data of both when they are updated.

@@ -1,4 +1,4 @@
-//! Settings of the mixtures and their sampler, `[schema]`.
+//! Settings of the two mixture models and their sampler, `[schema]`, with their ranges.
 
 use serde::{Deserialize, Serialize};
 

@@ -1,4 +1,4 @@
-//! A small body and its movement, for the tests of this stage.
+//! Build a small body and its movement for the tests of this stage.
 
 use super::settings::{AngleError, Motion, Physics, Targets};
 use crate::stages::agent::{Agent, Geometry, Morphology, Skin};

@@ -1,4 +1,4 @@
-//! Random numbers → torques: the coordinated random movement of section 5.1.
+//! Move the joints at random, in coordination: lock each joint, or drive it to a random target (section 5.1).
 //!
 //! Every joint is locked at the beginning. At every epoch each joint is drawn anew: with probability 1 − p
 //! it moves to a random target under a linear controller, otherwise it is locked at the angle it has. The

@@ -1,4 +1,4 @@
-//! The agent in Open Dynamics Engine: the only file with `unsafe` code. Wraps what the agent needs.
+//! Simulate the agent in Open Dynamics Engine (section 5.1). This is the only file with `unsafe` code.
 //!
 //! ODE's assertions end the process, so everything handed to it is checked before, and the state of every
 //! body after each step. Each world has its own step threading, because two worlds that share ODE's

@@ -1,4 +1,4 @@
-//! Every picture from a small table, and tables that cannot be drawn.
+//! Test every picture from a small table, and tables that cannot be rendered.
 
 use std::f64::consts::TAU;
 

@@ -1,3 +1,5 @@
+//! Test the clusterings on maps whose clusters are known, and on maps that are degenerate.
+
 use rand::RngExt;
 
 use super::super::gmm::gmm;

@@ -1,4 +1,4 @@
-//! What majorisation promises, with broken twins that do not keep it.
+//! Test what majorisation promises, with broken twins that do not keep it.
 
 use rand::RngExt;
 

@@ -1,4 +1,4 @@
-//! Draws against moments, against another construction, and against the posterior on a grid.
+//! Test draws against moments, another construction, and the posterior on a grid.
 
 use super::super::gaussian::standard_normal;
 use super::*;

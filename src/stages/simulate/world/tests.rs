@@ -1,4 +1,4 @@
-//! Conservation laws and constraints of the simulated body, each with a broken twin that breaks them.
+//! Test conservation laws and constraints of the simulated body, each with a broken twin that breaks them.
 
 use rand::RngExt;
 

@@ -1,4 +1,4 @@
-//! Each conditional against brute force.
+//! Test each conditional distribution against brute force.
 
 use super::*;
 

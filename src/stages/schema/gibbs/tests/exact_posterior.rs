@@ -1,4 +1,4 @@
-//! Visits to all partitions of five points against the exact posterior.
+//! Test how often a chain visits each partition of five points, against the exact posterior.
 
 use super::*;
 
