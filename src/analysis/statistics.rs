@@ -5,16 +5,16 @@ use statrs::distribution::{ChiSquared, ContinuousCDF, Normal, StudentsT};
 use statrs::stats_tests::Alternative;
 use statrs::stats_tests::mannwhitneyu::{MannWhitneyUMethod, mannwhitneyu};
 
-/// A value with its 95 % interval, and how many samples it rests on.
+/// A value with its 95 % interval, and how many observations it rests on.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Estimate {
-    /// The value; none where there is no sample ("0 of 0, no rate").
+    /// The value; `None` without an observation (0 of 0 is no rate).
     pub value: Option<f64>,
-    /// Number of samples.
+    /// Number of observations.
     pub n: usize,
     /// Lower and upper end of the 95 % interval, where there is one.
     pub interval: Option<(f64, f64)>,
-    /// Number of simulations that the samples are from.
+    /// Number of simulations that the observations are from.
     pub simulations: usize,
     /// Lowest and highest value of a single simulation, where there are several.
     pub spread: Option<(f64, f64)>,
@@ -93,7 +93,7 @@ pub fn quantile(sorted: &[f64], share: f64) -> f64 {
 }
 
 /// Draws of simulations with replacement, the same for every estimate of an experiment: the bootstrap over
-/// simulations, for samples of one simulation share its body map and are not independent.
+/// simulations, for observations of one simulation share its body map and are not independent.
 #[derive(Debug, Clone)]
 pub struct Resamples {
     /// How often each simulation was drawn, a row a resample.
@@ -112,12 +112,12 @@ impl Resamples {
         Self { multiplicities: (0..RESAMPLES).map(draw).collect() }
     }
 
-    /// `pooled`, an estimate over the samples of all simulations, with what the simulations differ by:
-    /// `groups` holds the sum and the number of samples of each.
+    /// `pooled`, an estimate over the observations of all simulations, with what the simulations differ by:
+    /// `groups` holds the sum and the number of observations of each.
     ///
     /// The interval is the expanded percentile interval of Hesterberg (2015), which makes up for what a
     /// percentile interval lacks with few simulations; and it is never narrower than the one of `pooled`,
-    /// which would hold if all samples were independent.
+    /// which would hold if all observations were independent.
     ///
     /// # Panics
     /// If there are not as many groups as simulations.
@@ -143,11 +143,11 @@ impl Resamples {
     }
 
     /// The difference of two estimates over the same simulations, the second minus the first, each with the sum and
-    /// the number of samples of each simulation.
+    /// the number of observations of each simulation.
     ///
     /// Simulations are drawn in pairs, since they share what the two have in common: the interval is the expanded
-    /// percentile interval of the differences. It is never narrower than that of two estimates whose samples are all
-    /// independent, by Zou & Donner (2008) from the intervals given. None where either has no value.
+    /// percentile interval of the differences. It is never narrower than that of two estimates whose observations are all
+    /// independent, by Zou & Donner (2008) from the intervals given. `None` if either has no value.
     pub fn difference(
         &self,
         (first, groups): (Estimate, &[(f64, usize)]),
@@ -173,7 +173,7 @@ impl Resamples {
     }
 }
 
-/// The mean of a resample of the simulations; none if it has no sample.
+/// The mean of a resample of the simulations; `None` if it has no observation.
 fn resampled(multiplicities: &[f64], groups: &[(f64, usize)]) -> Option<f64> {
     assert_eq!(multiplicities.len(), groups.len(), "a group for each simulation");
     let (sum, n) = multiplicities
@@ -197,7 +197,7 @@ pub fn mann_whitney(first: &[f64], second: &[f64]) -> f64 {
 }
 
 /// p value of the Kruskal–Wallis test that all groups have one distribution, with the correction for ties,
-/// as SciPy's `kruskal`; none with fewer than two groups, or where a group is empty, and 1 where nothing
+/// as SciPy's `kruskal`; `None` with fewer than two groups or with an empty one, and 1 where nothing
 /// differs.
 pub fn kruskal_wallis(groups: &[Vec<f64>]) -> Option<f64> {
     if groups.len() < 2 || groups.iter().any(Vec::is_empty) {
@@ -251,7 +251,7 @@ mod tests {
     }
 
     #[test]
-    fn no_sample_has_no_rate() {
+    fn no_observation_has_no_rate() {
         assert_eq!(rate(0, 0), Estimate::default());
     }
 
@@ -289,7 +289,7 @@ mod tests {
         let (low, high) = unlike.interval.unwrap();
         assert!(low < 0.7 && high == 1.0, "{low} {high}");
         assert_eq!(unlike.spread, Some((0.5, 1.0)));
-        // Four simulations without an eligible sample leave one, whose samples are all there is.
+        // Four simulations without an eligible observation leave one, whose observations are all there is.
         let alone = resamples.clustered(rate(9, 10), &[(9.0, 10), (0.0, 0), (0.0, 0), (0.0, 0), (0.0, 0)]);
         assert_eq!((alone.interval, alone.spread, alone.simulations), (rate(9, 10).interval, None, 1));
         let single = resamples.clustered(rate(3, 5), &[(1.0, 1), (0.0, 1), (1.0, 1), (1.0, 1), (0.0, 1)]);
@@ -311,7 +311,7 @@ mod tests {
         let (_, (unpaired_low, _)) = between([0.0, 0.2, 0.5, 0.7, 0.9], [1.0, 0.8, 0.6, 0.3, 0.1]);
         assert!((paired - 0.1).abs() < 1e-12 && low < 0.1 && high > 0.1);
         assert!(unpaired_low < low - 0.3, "{unpaired_low} {low}");
-        // Nothing differs in any simulation, and yet fifty samples of each know no more than this.
+        // Nothing differs in any simulation, and yet fifty observations of each know no more than this.
         let (none, (low, high)) = between([0.0; 5], [0.0; 5]);
         assert_eq!(none, 0.0);
         assert!((low + high).abs() < 1e-12 && (high - wilson(0, 50).1).abs() < 1e-12);

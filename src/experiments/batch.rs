@@ -46,7 +46,7 @@ pub struct Task {
 /// Which files of a body are results.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Keep {
-    /// None: only what is inferred counts.
+    /// No file: only what is inferred counts.
     Nothing,
     /// The truth and the body maps.
     Maps,
@@ -109,7 +109,7 @@ impl From<StageError> for Stop {
     }
 }
 
-/// The pressures of a movement, or why there are none, once a task needed them.
+/// The pressures of a movement, or why it failed; empty until a task needs them.
 type Felt = Option<Result<FeltBody, String>>;
 
 /// Finished body maps: their files are the result, and a checkpoint keeps the hashes.

@@ -66,7 +66,7 @@ pub struct MapRow {
     pub kind: MapPoint,
     /// Number of the sensor or joint, from 0.
     pub index: usize,
-    /// The true part (a, b) or the cluster (c, d) of a sensor; none of a joint.
+    /// The true part (a, b) or the cluster (c, d) of a sensor; empty for a joint.
     pub group: Option<usize>,
     /// Coordinate, bits.
     pub x1: f64,
@@ -136,7 +136,7 @@ pub struct BoxRow {
 pub struct CurveRow {
     /// The clustering or mixture.
     pub method: String,
-    /// Number of clusters that it was told; none if it found the number itself.
+    /// Number of clusters that it was told; empty if it found the number itself.
     pub clusters: Option<usize>,
     /// Which draws are counted.
     pub counting: Counting,

@@ -93,7 +93,7 @@ impl Design {
         Ok(design)
     }
 
-    /// All candidates: those with a name, then those drawn at random, none twice.
+    /// All candidates: those with a name, then those drawn at random, each once.
     pub fn all_candidates(&self) -> Vec<Candidate> {
         let mut all = self.start.clone();
         for number in 1..=self.candidates {

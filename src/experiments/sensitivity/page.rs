@@ -305,7 +305,7 @@ fn percent(rate: f64) -> String {
     format!("{:.0} %", 100.0 * rate)
 }
 
-/// A value with its interval and number of samples.
+/// A value with its interval and n.
 fn cell(row: Option<&Row>, share: bool) -> String {
     let Some((row, value)) = row.and_then(|row| Some((row, row.estimate?))) else {
         return "none".to_owned();
