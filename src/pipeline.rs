@@ -22,7 +22,7 @@ use crate::stages::tree::Truth;
 pub struct Body {
     /// The true parts and tree, which the inference must not see.
     pub truth: Truth,
-    /// The body maps; none where no sensor differs from another, as when nothing ever moves (p = 1).
+    /// The body maps; `None` where no sensor differs from another, as when nothing ever moves (p = 1).
     pub maps: Option<BodyMaps>,
 }
 
@@ -46,12 +46,12 @@ pub struct Facts {
     pub eigenvalues: Vec<f64>,
     /// How well that map agrees with the distances; see [`ClassicalScaling::agreement`].
     pub map_agreement: f64,
-    /// How far each map is better than the classical one; of classical maps nothing.
+    /// How far each map is better than the classical one; empty for classical maps.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub improvements: Vec<Improvement>,
 }
 
-/// What is inferred: a mixture, on a body map of some dimensions, of a body that moved at some p.
+/// A condition of the inference: the mixture, the p of the movement, and the d of the body map.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Condition {
     /// The mixture.
@@ -75,15 +75,15 @@ pub struct Record {
     pub model: Model,
     /// The chain, from 0.
     pub chain: usize,
-    /// The sweep after which it was drawn, from 1.
+    /// Number of the sweep after which the state was kept, from 1.
     pub sweep: usize,
     /// Number of estimated parts.
     pub parts: usize,
-    /// log p(x, z); none where there is no body map.
+    /// log p(x, z); `None` where there is no body map.
     pub log_posterior: Option<f64>,
     /// Adjusted Rand index.
     pub ari: f64,
-    /// Whether the tree counts.
+    /// Whether the tree counts for the success rate.
     pub eligible: bool,
     /// Whether the tree is right.
     pub tree_correct: bool,
@@ -96,7 +96,7 @@ impl Record {
     }
 }
 
-/// A clustering that was told the number of clusters, and its evaluation: a row of `baselines.csv`.
+/// A clustering by a method that is given the number of clusters, and its evaluation: a row of `baselines.csv`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct BaselineRecord {
     /// Simulation, from 1.
@@ -125,7 +125,7 @@ pub enum StageError {
     Infer(#[from] InferenceError),
 }
 
-/// What a body felt in one simulation, and what it is made of.
+/// What a body felt in one simulation, and its truth.
 #[derive(Debug, Clone)]
 pub struct FeltBody {
     /// The pressures on its sensors.
@@ -134,7 +134,7 @@ pub struct FeltBody {
     pub truth: Truth,
 }
 
-/// Stages 1 and 2. Calls `tick` once for each sample.
+/// Stages 1 and 2: moves the body and computes the pressures on its sensors. Calls `tick` once for each sample.
 ///
 /// # Errors
 /// If the simulation is unstable.
@@ -147,14 +147,17 @@ pub fn feel(settings: &Settings, simulation: usize, tick: &dyn Fn()) -> Result<F
     Ok(FeltBody { tactile, truth: agent.truth() })
 }
 
-/// Stages 3 to 5, to maps of each of `dims` dimensions, of which there is at least one.
+/// Stages 3 to 5: maps the sensors in each number of dimensions in `dims`.
 ///
 /// # Errors
-/// If the distances cannot be scaled.
+/// If the distances span fewer dimensions than the largest of `dims`.
+///
+/// # Panics
+/// If `dims` is empty.
 pub fn map_felt(felt: &FeltBody, settings: &Settings, dims: &[usize]) -> Result<MappedBody, StageError> {
     let symbols = quantise(&felt.tactile, &settings.quantise);
     let distances = information_metric(&symbols);
-    let largest = dims.iter().copied().max().expect("there is a dimension to map to");
+    let largest = dims.iter().copied().max().expect("dims must not be empty");
     let scaling = ClassicalScaling::new(&distances, largest)?;
     let (maps, improvements) = if scaling.positive() == 0 {
         (None, Vec::new())
@@ -171,7 +174,7 @@ pub fn map_felt(felt: &FeltBody, settings: &Settings, dims: &[usize]) -> Result<
     Ok(MappedBody { body: Body { truth: felt.truth.clone(), maps }, distances, facts })
 }
 
-/// What the inference says of one body map.
+/// The result of the inference on one body map.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Inference {
     /// All draws, evaluated.
@@ -182,7 +185,7 @@ pub struct Inference {
 
 /// Stages 6 and 7 for one condition. Calls `tick` once for each chain.
 ///
-/// Where there is no body map to draw from, the answer of every chain is one part that has all sensors.
+/// Where there is no body map to infer from, every chain answers that all sensors are on one part.
 ///
 /// # Errors
 /// If the map spans fewer than `dimension` dimensions.

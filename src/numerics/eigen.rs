@@ -20,7 +20,7 @@ const SPARE: usize = 5;
 const BLOCKS: usize = 6;
 const KEPT_BLOCKS: usize = 2;
 
-/// Restarts after which the whole matrix is decomposed instead; fewer than ten are usual.
+/// Maximum number of restarts, after which the whole matrix is decomposed instead; fewer than ten are usual.
 const MAX_RESTARTS: usize = 300;
 
 /// Restarts for which the images of the basis are combined before they are found anew: a product with the matrix
@@ -47,7 +47,8 @@ pub struct Eigen {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NoConvergence;
 
-/// The `wanted` largest eigenvalues, or all if there are fewer; a multiple one counts as often as it is there.
+/// The `wanted` largest eigenvalues of a symmetric n × n matrix, or all n if `wanted` is more; a multiple eigenvalue is
+/// repeated.
 ///
 /// # Errors
 /// If the decomposition does not converge.
@@ -72,7 +73,7 @@ fn whole(matrix: MatRef<'_, f64>, wanted: usize) -> Result<Eigen, NoConvergence>
     Ok(Eigen { values, vectors: vectors.reverse_cols().subcols(0, wanted).to_owned() })
 }
 
-/// The largest eigenvalues by block Lanczos; none if they do not converge.
+/// The largest eigenvalues by block Lanczos; `None` if they do not converge.
 ///
 /// The basis grows by the image of its last block until it is full, and restarts from the best combinations
 /// of all its vectors. All is orthogonalised and projected in full: that costs little beside the products,

@@ -20,7 +20,7 @@ pub type Checked = Result<(), OutOfRange>;
 /// Accepts a value that is `within` its range.
 ///
 /// # Errors
-/// [`OutOfRange`] with `key`, the value and `range` if it is not; so for all checks.
+/// [`OutOfRange`] with `key`, the value and `range` if it is not. The other checks of this file return the same error.
 pub fn check(key: &'static str, value: impl Debug, within: bool, range: &'static str) -> Checked {
     if within { Ok(()) } else { Err(OutOfRange { key, value: format!("{value:?}"), range }) }
 }

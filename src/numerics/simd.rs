@@ -2,7 +2,7 @@
 
 use pulp::{Arch, Simd, WithSimd};
 
-/// Runs a closure that is compiled once for each set of vector instructions, and chosen at run time.
+/// Runs `work`, which is compiled once for each set of vector instructions; the set is chosen at run time.
 ///
 /// The closure, and all it calls in its loops, must be `#[inline(always)]`, and it must change what it
 /// captures: one that does not is called through a shim of the compiler, which is not inlined. If its lanes

@@ -14,7 +14,7 @@ use crate::stages::tree::Truth;
 /// A position or direction in space.
 pub type Vector3 = [f64; 3];
 
-/// Parts of every body.
+/// Number of parts of every body.
 pub const PARTS: usize = 5;
 
 /// How the parts are joined.
@@ -133,9 +133,9 @@ pub struct Site {
 /// The body and its skin.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Agent {
-    /// Part 0 is the root of the tree.
+    /// Parts; part 0 is the root of the tree.
     pub parts: Vec<Part>,
-    /// Joint j carries part j + 1.
+    /// Joints; joint j carries part j + 1.
     pub joints: Vec<Joint>,
     /// Sensors, those of part 0 first.
     pub sites: Vec<Site>,
@@ -200,7 +200,7 @@ impl Agent {
         self.joints.iter().map(|joint| (joint.child, joint.parent)).collect()
     }
 
-    /// Both.
+    /// The true part of each sensor and the true tree.
     pub fn truth(&self) -> Truth {
         Truth { labels: self.labels(), tree: self.tree() }
     }

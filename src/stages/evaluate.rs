@@ -1,7 +1,7 @@
 //! Stage 7, `evaluate`: compare a draw with the truth (section 5.2).
 //!
-//! In: a [`Draw`] of the body schema and the [`Truth`]. Out: a [`Score`]: the adjusted Rand index, whether the tree
-//! counts, and whether it is right.
+//! In: a [`Draw`] of the body schema and the [`Truth`]. Out: a [`Score`]: the adjusted Rand index, whether the tree is
+//! eligible, and whether it is right.
 
 use std::collections::BTreeMap;
 
@@ -17,7 +17,7 @@ use crate::stages::tree::{Edge, Truth};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Evaluate {
-    /// Least adjusted Rand index at which a tree is counted.
+    /// Minimum adjusted Rand index of an eligible draw, whose tree counts for the success rate.
     pub eligible_ari: f64,
 }
 
@@ -35,16 +35,16 @@ impl Evaluate {
 /// How good one draw is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Score {
-    /// Adjusted Rand index of its partition.
+    /// Adjusted Rand index of its partition, at most 1.
     pub ari: f64,
-    /// Whether its tree counts: it has the true number of parts, and an ARI of at least
+    /// Whether its tree counts for the success rate: the draw has the true number of parts, and an ARI of at least
     /// `evaluate.eligible_ari`.
     pub eligible: bool,
     /// Whether its tree is the true one, under the matching of its clusters to the parts.
     pub tree_correct: bool,
 }
 
-/// Evaluates a draw; `eligible_ari` is the least ARI at which its tree counts.
+/// Evaluates a draw against the truth (section 5.2); `eligible_ari` is the minimum ARI at which its tree counts.
 pub fn score(draw: &Draw, truth: &Truth, eligible_ari: f64) -> Score {
     let ari = adjusted_rand_index(&draw.labels, &truth.labels);
     Score {

@@ -20,7 +20,7 @@ use crate::stages::sense::Tactile;
 pub enum Scheme {
     /// Level 0 is no pressure; the others hold equally many of that sensor's positive pressures.
     PerSensor,
-    /// The same with one set of thresholds for all sensors.
+    /// As [`Self::PerSensor`], but with one set of thresholds for all sensors.
     Pooled,
     /// Levels of equal width between the smallest and the largest pressure of all sensors.
     EqualWidth,
@@ -51,7 +51,7 @@ impl Quantise {
 pub struct Symbols {
     /// T.
     pub samples: usize,
-    /// Number of symbols; each is below it.
+    /// N, number of levels; each symbol is below it.
     pub levels: usize,
     /// M × T: the whole series of one sensor after that of another.
     pub values: Vec<u8>,
@@ -75,10 +75,10 @@ impl Symbols {
     }
 }
 
-/// Turns pressures into levels.
+/// Turns pressures into symbols (section 4.1).
 ///
-/// `settings.levels` counts the level for no pressure. A sensor with fewer distinct positive values than
-/// levels leaves some of them empty.
+/// In: M × T pressures in Pa. Out: M × T symbols from 0 to N − 1, where N is `settings.levels` and counts the level for
+/// no pressure. A sensor with fewer distinct positive values than levels leaves some levels empty.
 pub fn quantise(tactile: &Tactile, settings: &Quantise) -> Symbols {
     let levels = settings.levels;
     let common = match settings.scheme {

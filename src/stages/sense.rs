@@ -57,12 +57,14 @@ impl Tactile {
     }
 }
 
-/// The pressures on every sensor of `agent` over a trajectory of at least one sample.
+/// The pressure on each sensor of `agent` over a trajectory (equation 27).
 ///
-/// With R the rotation of the part now and R', p' its rotation and centre one sample before, equation 27 of a
-/// sensor at l with normal n, both in the part's frame, is linear in twelve numbers that all sensors of the
-/// part share: ṗ · n = nᵀ [Rᵀ (p − p')] / Δt + nᵀ [Rᵀ (R − R')] l / Δt. They are found once for each part
-/// and sample, and what is left for a sensor is a product of twelve.
+/// In: T + 1 poses of each part, T ≥ 1. Out: M × T pressures in Pa, at least 0.
+///
+/// With R the rotation of the part now and R', p' its rotation and centre one sample before, the outward
+/// speed of a sensor at l with normal n, both in the frame of the part, is linear in twelve numbers that all sensors of the
+/// part share: ṗ · n = nᵀ [Rᵀ (p − p')] / Δt + nᵀ [Rᵀ (R − R')] l / Δt. These are computed once for each part and
+/// sample; each sensor then takes twelve multiplications.
 pub fn sense(agent: &Agent, trajectory: &Trajectory, settings: &Sense) -> Tactile {
     /// Sensors that read a block of motion while it is in the cache.
     const GROUP: usize = 8;
@@ -85,8 +87,8 @@ pub fn sense(agent: &Agent, trajectory: &Trajectory, settings: &Sense) -> Tactil
 /// Samples that are computed side by side.
 const BLOCK: usize = 64;
 
-/// What all sensors of a part share: Rᵀ (p − p') / Δt, then the rows of Rᵀ (R − R') / Δt, of a block of
-/// samples.
+/// The twelve numbers that all sensors of a part share, for a block of samples: Rᵀ (p − p') / Δt, then the rows of
+/// Rᵀ (R − R') / Δt.
 type Motion = [[f64; BLOCK]; 12];
 
 fn motion(trajectory: &Trajectory, part: usize, interval: f64) -> Vec<Motion> {
@@ -118,7 +120,7 @@ fn shared(before: &Pose, now: &Pose, interval: f64) -> [f64; 12] {
     numbers
 }
 
-/// What each of the twelve numbers counts for a sensor.
+/// The factor of each of the twelve numbers for a sensor.
 fn coefficients(site: &Site) -> [f64; 12] {
     let mut coefficients = [0.0; 12];
     for i in 0..3 {

@@ -1,6 +1,6 @@
 //! Cluster a body map by one of the three methods that the paper compares its mixtures with (section 5.2, figure 8a).
 //!
-//! None of them finds the number of clusters, so all are told it. The results are equal up to rounding for maps
+//! No method finds the number of clusters, so each is given it. The results are equal up to rounding for maps
 //! in other units, moved or turned: no method has a constant with a unit.
 
 use serde::{Deserialize, Serialize};
@@ -58,12 +58,12 @@ impl Clustering {
     }
 }
 
-/// The cluster of each of the n points, below `clusters`.
+/// Clusters a body map (n × d) by one method, and returns the cluster of each of the n points, below `clusters`.
 ///
 /// k-means and the mixture take the best of `restarts` random starts; Ward's method has no start and draws
 /// nothing. `clusters` and `restarts` of 0 count as 1. Points that coincide share a cluster, so that there
-/// are no more clusters than different points; a mixture may also find fewer. The labels of clusters that
-/// are not there are not used. The coordinates and their squares must be finite.
+/// are no more clusters than different points; a mixture may also find fewer. Labels of clusters that are not found
+/// do not occur. The coordinates and their squares must be finite.
 pub fn cluster(
     method: Clustering,
     map: &BodyMap,

@@ -16,13 +16,13 @@ use crate::stages::mixture::{Gaussian, Points, lloyd};
 /// effect would depend on the unit of the distances.
 const RIDGE: f64 = 1e-6;
 
-/// Gain in log likelihood per point below which the climb ends.
+/// Gain in log likelihood per point below which the iteration ends.
 const TOLERANCE: f64 = 1e-8;
 
-/// Rounds after which it ends in any case.
+/// Maximum number of iterations.
 const MAX_ITERATIONS: usize = 1000;
 
-/// A component that is responsible for less than this, in points, is dropped: it is for none at all.
+/// Minimum weight of a component, in points; a component of less weight is dropped.
 const MIN_WEIGHT: f64 = 1e-12;
 
 /// A fitted mixture, as far as it is used.
@@ -42,8 +42,8 @@ struct Component {
     gaussian: Gaussian,
 }
 
-/// The fit of greatest likelihood from `restarts` starts, each by a k-means of its own; the earliest of
-/// equal ones.
+/// Fits a Gaussian mixture to a body map (n × d): the fit of greatest likelihood from `restarts` starts, each by a k-means
+/// of its own; the earliest of equal ones.
 ///
 /// If all points coincide, or their spread is so large or small that its square is no number, the labels are
 /// those of k-means.
@@ -53,7 +53,7 @@ pub fn gmm(map: &BodyMap, clusters: usize, restarts: usize, rng: &mut Stream) ->
     let mut best: Option<MixtureFit> = None;
     for _ in 0..restarts.max(1) {
         let start = lloyd(&points, clusters, rng).labels;
-        let fit = climb(&points, ridge, &start)
+        let fit = expectation_maximisation(&points, ridge, &start)
             .unwrap_or(MixtureFit { labels: start, log_likelihood: f64::INFINITY });
         if best.as_ref().is_none_or(|best| fit.log_likelihood > best.log_likelihood) {
             best = Some(fit);
@@ -70,9 +70,9 @@ pub fn ridge(map: &BodyMap) -> f64 {
     RIDGE * squares / map.coordinates.len().max(1) as f64
 }
 
-/// Alternates the two steps from the components that `labels` give; `None` if a covariance is singular even
-/// with its ridge.
-fn climb(points: &Points, ridge: f64, labels: &[usize]) -> Option<MixtureFit> {
+/// Expectation–maximisation from the components that `labels` give; `None` if a covariance is singular even with its
+/// ridge.
+fn expectation_maximisation(points: &Points, ridge: f64, labels: &[usize]) -> Option<MixtureFit> {
     if !ridge.is_normal() {
         return None;
     }
@@ -81,9 +81,9 @@ fn climb(points: &Points, ridge: f64, labels: &[usize]) -> Option<MixtureFit> {
     let mut responsibilities: Vec<Vec<f64>> = (0..clusters).map(member).collect();
     let mut log_likelihood = f64::NEG_INFINITY;
     for _ in 0..MAX_ITERATIONS {
-        let components = maximise(points, &responsibilities, ridge)?;
+        let components = maximisation(points, &responsibilities, ridge)?;
         let before = log_likelihood;
-        (responsibilities, log_likelihood) = expect(points, &components);
+        (responsibilities, log_likelihood) = expectation(points, &components);
         if (log_likelihood - before).abs() < TOLERANCE * points.count as f64 {
             break;
         }
@@ -95,8 +95,8 @@ fn climb(points: &Points, ridge: f64, labels: &[usize]) -> Option<MixtureFit> {
     Some(MixtureFit { labels: (0..points.count).map(most_probable).collect(), log_likelihood })
 }
 
-/// The components of greatest likelihood given each one's share in each point.
-fn maximise(points: &Points, responsibilities: &[Vec<f64>], ridge: f64) -> Option<Vec<Component>> {
+/// The maximisation step: the components of greatest likelihood, given the share of each in each point.
+fn maximisation(points: &Points, responsibilities: &[Vec<f64>], ridge: f64) -> Option<Vec<Component>> {
     let weights = responsibilities.iter().map(|shares| shares.iter().sum::<f64>());
     responsibilities
         .iter()
@@ -140,8 +140,8 @@ fn moments(points: &Points, shares: &[f64], weight: f64) -> (DVector<f64>, DMatr
     (mean, covariance / weight)
 }
 
-/// Each component's share in each point, and the log likelihood of all points.
-fn expect(points: &Points, components: &[Component]) -> (Vec<Vec<f64>>, f64) {
+/// The expectation step: the share of each component in each point, and the log likelihood of all points.
+fn expectation(points: &Points, components: &[Component]) -> (Vec<Vec<f64>>, f64) {
     let weighted = |component: &Component| -> Vec<f64> {
         let densities = log_densities(points, &component.gaussian).into_iter();
         densities.map(|density| density + component.log_weight).collect()

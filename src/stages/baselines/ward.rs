@@ -8,9 +8,10 @@ use kodama::{Method, Step, linkage};
 
 use crate::stages::body_map::BodyMap;
 
-/// The cluster of each of the n points: `clusters` of them, or as many as there are different points.
+/// Clusters a body map (n × d) by Ward's method, and returns the cluster of each of the n points: `clusters` clusters, or
+/// fewer if there are fewer different points.
 ///
-/// Of merges that cost the same, the one that comes first in the order of the points is made.
+/// Of merges of equal cost, the first one in the order of the points is made.
 pub fn ward(map: &BodyMap, clusters: usize) -> Vec<usize> {
     let n = map.points();
     let row = |i: usize| &map.coordinates[i * map.dims..][..map.dims];

@@ -28,7 +28,7 @@ pub struct ClassicalScaling {
 /// A body map that cannot be made.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum MapError {
-    /// All sensors show the same.
+    /// All distances are 0.
     #[error("the {0} sensors are all at distance 0 from each other, so that there is nothing to map")]
     NoDifference(usize),
     /// More dimensions than the distances span.
@@ -44,7 +44,7 @@ pub enum MapError {
         /// Number of positive eigenvalues.
         positive: usize,
     },
-    /// Numbers so large or small that their products are none.
+    /// Distances whose squares overflow or underflow.
     #[error(
         "the largest distance is {0:e}, which is beyond what can be computed with; rescale the distances"
     )]

@@ -1,6 +1,6 @@
 //! Hold the coordinates of the sensors on a body map.
 
-/// Coordinates of n points (sensors) in d dimensions.
+/// Coordinates of n points (sensors) in d dimensions, in the unit of the distances: bits.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BodyMap {
     /// d.
@@ -15,10 +15,10 @@ impl BodyMap {
         self.coordinates.len() / self.dims
     }
 
-    /// The first d of its dimensions.
+    /// The map of its first `dims` dimensions.
     ///
     /// # Panics
-    /// If it has fewer.
+    /// If the map has fewer dimensions.
     pub fn first(&self, dims: usize) -> Self {
         let rows = self.coordinates.chunks_exact(self.dims);
         Self { dims, coordinates: rows.flat_map(|row| &row[..dims]).copied().collect() }

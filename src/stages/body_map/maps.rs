@@ -17,22 +17,22 @@ pub enum BodyMaps {
 }
 
 impl BodyMaps {
-    /// Maps of `dims` dimensions, of which there is at least one, and how far each is better than the classical map
-    /// that it started from; of classical maps nothing.
+    /// Makes a map of each number of dimensions in `dims`, and says how far each is better than the classical map that
+    /// it started from; for classical maps that list is empty.
     ///
     /// # Errors
-    /// If the distances span fewer dimensions than the largest of `dims`; so for every method, since each starts from
-    /// the classical map.
+    /// If the distances span fewer dimensions than the largest of `dims`. This holds for every method, since each starts
+    /// from the classical map.
     ///
     /// # Panics
-    /// If the largest of `dims` is more than `scaling` was made for.
+    /// If `dims` is empty, or its largest value is more than `scaling` was made for.
     pub fn new(
         distances: &Distances,
         scaling: &ClassicalScaling,
         method: MapMethod,
         dims: &[usize],
     ) -> Result<(Self, Vec<Improvement>), MapError> {
-        let largest = dims.iter().copied().max().expect("there is a dimension to map to");
+        let largest = dims.iter().copied().max().expect("dims must not be empty");
         let classical = scaling.coordinates(largest)?;
         let fit = match method {
             MapMethod::Classical => return Ok((Self::Nested(classical), Vec::new())),
@@ -44,7 +44,7 @@ impl BodyMaps {
         Ok((Self::Each(maps), improvements))
     }
 
-    /// Takes up maps that were made by a method before; none if there are none.
+    /// Uses maps that an earlier run made by `method`; `None` if `maps` is empty.
     pub fn of(method: MapMethod, mut maps: Vec<BodyMap>) -> Option<Self> {
         match method {
             MapMethod::Classical => maps.pop().map(Self::Nested),
@@ -52,10 +52,10 @@ impl BodyMaps {
         }
     }
 
-    /// The map in d dimensions.
+    /// The map of `dims` dimensions.
     ///
     /// # Panics
-    /// If it was not made.
+    /// If there is no such map.
     pub fn in_dims(&self, dims: usize) -> BodyMap {
         match self {
             Self::Nested(map) => map.first(dims),

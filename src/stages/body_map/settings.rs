@@ -6,11 +6,11 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum MapMethod {
-    /// Torgerson's: the largest eigenvalues of the inner products.
+    /// Torgerson's classical scaling: the largest eigenvalues of the matrix of inner products.
     Classical,
-    /// Metric: the least sum of squared differences to the distances, from the classical map on.
+    /// Metric scaling: minimises the squared differences to the distances, starting from the classical map.
     Smacof,
-    /// Kruskal's: the same to numbers that only rise as the distances do.
+    /// Kruskal's nonmetric scaling: uses only the order of the distances, starting from the classical map.
     Nonmetric,
 }
 
@@ -18,6 +18,6 @@ pub enum MapMethod {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Map {
-    /// Its variant.
+    /// The variant.
     pub method: MapMethod,
 }

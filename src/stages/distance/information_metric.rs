@@ -24,14 +24,15 @@ impl Distances {
     }
 }
 
-/// Most sensors whose distances are computed: a matrix of 3.2 GB.
+/// Maximum number of sensors: their distances take 3.2 GB.
 pub const MAX_SENSORS: usize = 20_000;
 
-/// Most levels for which joint counts by bit planes, (N − 1)² passes over T bits, beat one pass over T
-/// symbols.
+/// Maximum number of levels for which bit planes, (N − 1)² passes over T bits, count faster than one pass over T symbols.
 const MAX_LEVELS_FOR_PLANES: usize = 10;
 
-/// The information metric between all pairs of sensors, in bits.
+/// The information metric between all pairs of sensors (equations 23 to 26).
+///
+/// In: the symbols of M sensors at T times. Out: M × M distances in bits, 0 to 2 log₂ N, symmetric, 0 on the diagonal.
 pub fn information_metric(symbols: &Symbols) -> Distances {
     let (sensors, levels) = (symbols.sensors(), symbols.levels);
     let planes = (levels <= MAX_LEVELS_FOR_PLANES).then(|| BitPlanes::new(symbols));
@@ -89,14 +90,14 @@ fn metric_of_counts(joint: &[u32], first: &[u32], second: &[u32], logarithms: &[
     sum / (logarithms.len() - 1) as f64
 }
 
-/// How often each symbol occurs.
+/// How often each symbol occurs in the series of one sensor.
 fn histogram(series: &[u8], levels: usize) -> Vec<u32> {
     let mut counts = vec![0; levels];
     series.iter().for_each(|&symbol| counts[usize::from(symbol)] += 1);
     counts
 }
 
-/// Joint counts of two sensors, one pass over their symbols: the plain definition (equations 25 and 26).
+/// Joint counts of two sensors by one pass over their symbols, as equations 25 and 26 define them.
 fn count(symbols: &Symbols, i: usize, j: usize, joint: &mut [u32]) {
     joint.fill(0);
     let series = |sensor: usize| &symbols.values[sensor * symbols.samples..][..symbols.samples];

@@ -17,7 +17,7 @@ type Block = [f64; BLOCK];
 /// number (2⁻⁵³) even 3000 times over.
 const NEGLIGIBLE: f64 = -45.0;
 
-/// z_i ~ Categorical ∝ π_k N(x_i; μ_k, Σ_k), in place of the labels of before.
+/// Draws z_i ~ Categorical ∝ π_k N(x_i; μ_k, Σ_k) for each point, and overwrites `labels` with it.
 pub fn draw_labels(
     points: &Points,
     gaussians: &[Gaussian],
@@ -31,7 +31,10 @@ pub fn draw_labels(
     );
 }
 
-/// [`draw_labels`], by any vector instructions.
+/// Does the work of [`draw_labels`], with whichever vector instructions it is compiled for.
+///
+/// It is long because the loop over a block of points must stay one function that the compiler vectorises: calls
+/// between its steps would pass whole blocks through memory.
 #[inline(always)]
 fn draw_labels_in_lanes(
     points: &Points,
@@ -100,7 +103,7 @@ pub fn log_densities(points: &Points, gaussian: &Gaussian) -> Vec<f64> {
     densities
 }
 
-/// |P (x − μ)|² for each point of a block; none once it is known to be above the limits of all of them.
+/// |P (x − μ)|² for each point of a block; `None` as soon as it is known to exceed the limit of every point.
 #[inline(always)]
 fn squares(block: &[Block], gaussian: &Gaussian, limits: &Block) -> Option<Block> {
     let mut squares = [0.0; BLOCK];

@@ -8,7 +8,7 @@ use rand_distr::StandardNormal;
 
 use super::augmented::Augmented;
 
-/// A matrix that is positive definite, but not any more when computed in floating point.
+/// A matrix that is positive definite in exact arithmetic, but not in floating point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("a matrix that is positive definite is not so after rounding")]
 pub struct Rounding;

@@ -12,7 +12,7 @@ use super::points::Points;
 use crate::numerics::rng::Stream;
 use crate::stages::body_map::BodyMap;
 
-/// Rounds of Lloyd's algorithm after which it ends in any case.
+/// Maximum number of iterations of Lloyd's algorithm.
 const MAX_ITERATIONS: usize = 1000;
 
 /// Points in clusters, each point in that of the nearest mean.
@@ -20,7 +20,7 @@ const MAX_ITERATIONS: usize = 1000;
 pub struct Partition {
     /// The cluster of each of the n points.
     pub labels: Vec<usize>,
-    /// Sum of the squared distances of the points to the means of their clusters.
+    /// Inertia: the sum of squared distances of the points from the means of their clusters.
     pub inertia: f64,
 }
 

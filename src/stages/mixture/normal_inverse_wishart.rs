@@ -21,12 +21,12 @@ pub struct NormalInverseWishart {
     moments: Augmented,
     /// U, upper triangular, with Ψ = Uᵀ U.
     scale: Augmented,
-    /// ν > d − 1.
+    /// ν > d − 1, degrees of freedom.
     pub degrees_of_freedom: f64,
 }
 
 impl NormalInverseWishart {
-    /// From m, k, Ψ and ν; `None` if Ψ is not positive definite.
+    /// The distribution with parameters m (d), k, Ψ (d × d) and ν; `None` if Ψ is not positive definite.
     pub fn new(
         mean: DVector<f64>,
         mean_weight: f64,

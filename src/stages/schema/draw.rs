@@ -5,32 +5,36 @@ use serde::{Deserialize, Serialize};
 use super::settings::Schema;
 use crate::stages::tree::Edge;
 
-/// One draw of a body schema.
+/// One draw of a body schema: the state of a chain after a sweep (section 3).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Draw {
-    /// The chain it is from, from 0.
+    /// Number of the chain, from 0.
     pub chain: usize,
-    /// The sweep after which it was drawn, from 1.
+    /// Number of the sweep after which the state was kept, from 1.
     pub sweep: usize,
-    /// z: the component of each sensor, below K.
+    /// z: the component of each of the M sensors, 0 to K − 1.
     pub labels: Vec<usize>,
-    /// The tree over the active components.
+    /// C: the tree over the active components, those of more than one sensor.
     pub tree: Vec<Edge>,
-    /// q of each edge of the tree, on the body map. Empty for a DPGMM, which has no joints.
+    /// q of each edge of the tree: d coordinates on the body map. Empty for a DPGMM, which has no joints.
     pub joints: Vec<Vec<f64>>,
-    /// log p(x, z), see [`Chain::log_posterior`]; none without a body map.
+    /// log p(x, z), see [`super::Chain::log_posterior`]; `None` without a body map.
     pub log_posterior: Option<f64>,
 }
 
-/// The draw of highest log posterior, of at least one.
+/// The draw of highest log posterior; the first of equal ones.
+///
+/// # Panics
+/// If `draws` is empty.
 pub fn best(draws: &[Draw]) -> &Draw {
     draws
         .iter()
         .reduce(|kept, next| if next.log_posterior > kept.log_posterior { next } else { kept })
-        .expect("there is at least one chain, which keeps at least one draw")
+        .expect("draws must not be empty")
 }
 
-/// What each chain says of sensors that do not differ: all of them are on one part.
+/// One draw for each chain, with all sensors in one component: the answer where no sensor differs from another, so that
+/// there is no body map to infer from.
 pub fn one_part(sensors: usize, settings: &Schema) -> Vec<Draw> {
     let draw = |chain| Draw {
         chain,

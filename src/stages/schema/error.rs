@@ -2,21 +2,21 @@
 
 use crate::stages::mixture::Rounding as RoundingError;
 
-/// Most numbers in the matrices of all components together, of which a chain holds a few: 80 MB each.
+/// Maximum number of entries in one matrix of all components together, 80 MB; a chain holds a few such matrices.
 const MAX_MATRIX_ENTRIES: usize = 10_000_000;
 
-/// Most labels in all draws that are kept, 8 GB.
+/// Maximum number of labels in all draws that are kept, 8 GB.
 pub const MAX_LABELS: usize = 1_000_000_000;
 
-/// Whether the matrices of so many components in so many dimensions fit the memory.
+/// Whether the d × d matrices of K components fit the memory: K d² is at most 10 million.
 pub fn matrices_fit(components: usize, dims: usize) -> bool {
     dims.saturating_mul(dims).saturating_mul(components) <= MAX_MATRIX_ENTRIES
 }
 
-/// A body map that the mixture cannot be sampled on.
+/// A body map on which no mixture can be inferred.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum InferenceError {
-    /// Matrices beyond any memory.
+    /// Matrices too large for the memory.
     #[error(
         "schema.components = {components} in {dims} dimensions take matrices of more than 10 million numbers; use fewer \
          of either"
@@ -27,7 +27,7 @@ pub enum InferenceError {
         /// d.
         dims: usize,
     },
-    /// Results beyond any memory.
+    /// Draws too large for the memory.
     #[error(
         "{draws} draws of {points} points are more than 1 billion labels; keep fewer (schema.chains, schema.sweeps, \
          schema.keep)"
@@ -38,13 +38,13 @@ pub enum InferenceError {
         /// n.
         points: usize,
     },
-    /// A matrix that is positive definite but for rounding.
+    /// A matrix that is positive definite in exact arithmetic, but not in floating point.
     #[error(
         "a component is so flat that rounding leaves nothing of it; raise schema.scale, schema.extra_freedom or \
          schema.mean_weight, or use fewer dimensions"
     )]
     Rounding,
-    /// Numbers so large or small that their products are none.
+    /// Coordinates whose squares overflow or underflow.
     #[error("the points spread over {0:e}, which is beyond what can be computed with; rescale them")]
     Scale(f64),
     /// The points span fewer than d dimensions.

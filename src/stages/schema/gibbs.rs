@@ -40,17 +40,17 @@ pub struct Chain<'a> {
     pub gaussians: Vec<Gaussian>,
     /// log π.
     pub log_weights: Vec<f64>,
-    /// q and C. Empty for a DPGMM.
+    /// q and C: a joint for each edge of the tree. Empty for a DPGMM.
     pub joints: Vec<Joint>,
-    /// SufficientStatistics of each component's points.
+    /// Sufficient statistics of each component's points.
     statistics: Vec<SufficientStatistics>,
 }
 
 impl<'a> Chain<'a> {
-    /// Starts from the labels that the settings say, and draws all else given them.
+    /// Starts a chain from the labels that `settings.start` asks for, and draws all other variables given them.
     ///
     /// # Errors
-    /// [`InferenceError::Rounding`]; so for all that follow.
+    /// [`InferenceError::Rounding`] if a covariance is not positive definite in floating point.
     pub fn start(
         points: &'a Points,
         prior: &'a NormalInverseWishart,
@@ -80,7 +80,10 @@ impl<'a> Chain<'a> {
         Ok(chain)
     }
 
-    /// One sweep.
+    /// Runs one sweep: updates every variable once.
+    ///
+    /// # Errors
+    /// As for [`Self::start`].
     pub fn sweep(&mut self, rng: &mut impl Rng) -> Result<(), InferenceError> {
         self.draw_labels(rng);
         self.update_statistics();
@@ -102,7 +105,7 @@ impl<'a> Chain<'a> {
         assignments::draw_labels(self.points, &self.gaussians, &self.log_weights, &mut self.labels, rng);
     }
 
-    /// Brings the statistics up to date with the labels.
+    /// Computes the sufficient statistics of each component from the labels.
     fn update_statistics(&mut self) {
         let mut members = vec![Vec::new(); self.settings.components];
         for (i, &label) in self.labels.iter().enumerate() {
@@ -133,8 +136,8 @@ impl<'a> Chain<'a> {
         Ok(())
     }
 
-    /// π ~ Dir(γ/K + n_1, …, γ/K + n_K) (equation 19), as Gamma draws without their common divisor, which
-    /// no update needs.
+    /// π ~ Dir(γ/K + n_1, …, γ/K + n_K) (equation 19), as Gamma draws that are not divided by their sum: no update
+    /// needs the sum.
     fn draw_weights(&mut self, rng: &mut impl Rng) {
         let share = self.settings.concentration / self.settings.components as f64;
         let draw = |data: &SufficientStatistics| {
@@ -213,8 +216,8 @@ impl<'a> Chain<'a> {
         (0..self.statistics.len()).filter(|&k| is_active(&self.statistics[k])).collect()
     }
 
-    /// The tree of this state: C of the DPGMM-LJ; for the DPGMM, the baseline's, by Prim's algorithm on
-    /// the Euclidean distances between the components' means (section 5.2).
+    /// The tree of this state. For the DPGMM-LJ it is C. For the DPGMM it is the baseline of section 5.2: Prim's
+    /// algorithm on the Euclidean distances between the means of the components.
     pub fn tree(&self) -> Vec<Edge> {
         match self.model {
             Model::DpgmmLj => self.joints.iter().map(|joint| joint.edge).collect(),
@@ -225,10 +228,10 @@ impl<'a> Chain<'a> {
         }
     }
 
-    /// log p(x, z) with π and all (μ, Σ) integrated out, up to no constant.
+    /// log p(x, z) with π and all (μ, Σ) integrated out, all constants included.
     ///
-    /// It is the DPGMM's for both models: the joints are left out, since with them μ and Σ can no longer be
-    /// integrated in closed form, and so that draws of both models compare.
+    /// Both models use that of the DPGMM, so that their draws can be compared. The joints are left out: with them, μ
+    /// and Σ cannot be integrated in closed form.
     ///
     /// # Errors
     /// [`InferenceError::Rounding`].

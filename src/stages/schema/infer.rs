@@ -11,13 +11,14 @@ use crate::numerics::rng::stream;
 use crate::stages::body_map::BodyMap;
 use crate::stages::mixture::Points;
 
-/// Runs `settings.chains` independent chains and returns the draws that are kept, by chain and sweep.
+/// Runs `settings.chains` independent chains on a body map (M × d) and returns the draws that are kept, ordered by chain
+/// and sweep.
 ///
-/// Chain c of a map in d dimensions has the stream (seed, simulation, "model d", c). `progress` advances
-/// by one for each chain.
+/// Chain c of a map in d dimensions has the stream (seed, simulation, "model d", c). Calls `tick` once for each finished
+/// chain.
 ///
 /// # Errors
-/// [`InferenceError`] if the map spans fewer dimensions than it has columns, or is more than can be computed with.
+/// [`InferenceError`] if the map spans fewer than d dimensions, or is too large for the memory.
 pub fn infer(
     map: &BodyMap,
     model: Model,

@@ -32,7 +32,7 @@ pub fn cost(q: &DVector<f64>, s: &Gaussian, c: &Gaussian) -> f64 {
     -s.log_density(q.as_slice()) - c.log_density(q.as_slice())
 }
 
-/// The same with the joint integrated out: −log N(μ_s; μ_c, Σ_s + Σ_c).
+/// The cost of equation 22 with the joint q integrated out: −log N(μ_s; μ_c, Σ_s + Σ_c).
 ///
 /// # Errors
 /// [`Rounding`] if the sum is not positive definite in floating point.

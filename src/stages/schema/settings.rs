@@ -5,18 +5,18 @@ use serde::{Deserialize, Serialize};
 use super::error::MAX_LABELS;
 use crate::numerics::range::{Checked, check, count, moderate};
 
-/// The mixture to sample from.
+/// The mixture model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Model {
     /// Dirichlet-process Gaussian mixture model; its tree is found afterwards by Prim's algorithm.
     Dpgmm,
-    /// The same with latent joints.
+    /// The DPGMM with latent joints: the paper's method.
     DpgmmLj,
 }
 
 impl Model {
-    /// Both, the baseline first.
+    /// Both models, the baseline first.
     pub const ALL: [Self; 2] = [Self::Dpgmm, Self::DpgmmLj];
 
     /// Name on the command line and in every file.
@@ -32,9 +32,9 @@ impl Model {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum EdgeWeight {
-    /// Each child keeps the joint q_s it has, whichever parent is weighed.
+    /// Each child keeps its joint q_s, whichever parent it is weighed with.
     Literal,
-    /// A joint is drawn for each pair of active components, and weighs that pair.
+    /// A joint is drawn for each pair of active components, and gives the weight of that pair.
     Pairwise,
     /// The joint is integrated out: −log N(μ_s; μ_c, Σ_s + Σ_c).
     Collapsed,
@@ -66,7 +66,7 @@ pub enum Keep {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Schema {
-    /// K, truncation of the weak limit.
+    /// K, number of components of the weak-limit approximation.
     pub components: usize,
     /// γ of Dir(γ/K).
     pub concentration: f64,

@@ -1,9 +1,9 @@
 //! Move the joints at random, in coordination: lock each joint, or drive it to a random target (section 5.1).
 //!
-//! Every joint is locked at the beginning. At every epoch each joint is drawn anew: with probability 1 − p
-//! it moves to a random target under a linear controller, otherwise it is locked at the angle it has. The
-//! paper leaves the controller's gains open, and whether a universal joint's two axes share one target; targets
-//! are uniform on [−π, π].
+//! Every joint is locked at the beginning. At the end of each epoch, each joint is drawn anew: with probability 1 − p it
+//! moves to a random target, uniform on [−π, π], under a linear controller; otherwise it is locked at its present angle.
+//! The paper leaves two things open: the gains of the controller, and whether the two axes of a universal joint share one
+//! target.
 
 use std::f64::consts::{PI, TAU};
 

@@ -26,8 +26,9 @@ impl Trajectory {
     }
 }
 
-/// Simulates the whole duration, with a sample every `interval` s (Δt). Calls `tick` once for each of the T + 1
-/// samples.
+/// Moves `agent` for `physics.duration`, and records a sample every `interval` (Δt, s), T + 1 in all (section 5.1).
+///
+/// Calls `tick` once for each sample.
 ///
 /// # Errors
 /// [`Unstable`] if the gains are too high for the step.

@@ -10,7 +10,7 @@ use crate::numerics::range::{Checked, check, count, gain, moderate, positive};
 pub enum AngleError {
     /// target − angle, with the angle in [−π, π] as ODE reports it.
     Raw,
-    /// The same wrapped to [−π, π]: the shorter way round.
+    /// target − angle wrapped to [−π, π]: the shorter way round.
     Shortest,
 }
 
@@ -30,7 +30,7 @@ pub enum Targets {
 pub struct Motion {
     /// p, ratio of motor coordination: the probability that a joint stays locked for an epoch, in [0, 1].
     pub coordination: f64,
-    /// Physics steps between two draws.
+    /// Physics steps of an epoch, after which each joint is drawn anew.
     pub epoch: usize,
     /// Where a joint that moves goes to.
     pub targets: Targets,
@@ -60,11 +60,11 @@ impl Motion {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Physics {
-    /// One step, s.
+    /// Duration of one step, s.
     pub step: f64,
     /// Simulated time, s.
     pub duration: f64,
-    /// Turns a part may make in a step; beyond, the simulation counts as unstable.
+    /// Maximum number of turns of a part in one step; above it, the simulation counts as unstable.
     pub turn_limit: f64,
 }
 
