@@ -192,8 +192,8 @@ fn damaged_and_foreign_parts_are_done_again_with_a_line_that_says_so() {
     let bytes = fs::read(&path).unwrap();
     fs::write(&path, &bytes[..bytes.len() / 2]).unwrap();
     let said = place.finish("exp1", "cut");
-    assert!(said.contains("dpgmm-2.json: is no checkpoint; this part is done again"), "{said}");
-    assert!(said.contains("going on from what an earlier run finished"), "{said}");
+    assert!(said.contains("dpgmm-2.json: is not a checkpoint; this part is done again"), "{said}");
+    assert!(said.contains("continuing from what an earlier run finished"), "{said}");
     same(&place.out("cut"), &expected, "a part cut short");
 
     leave_after(&place, "swapped", "simulation-1/dpgmm-lj-2.json", "-KILL");
@@ -231,7 +231,7 @@ fn a_map_for_each_dimension_is_taken_up_again() {
 
     leave_after(&place, "left", "simulation-1/dpgmm-2.json", "-KILL");
     let said = place.finish("exp1", "left");
-    assert!(said.contains("going on from") && !said.contains("again"), "{said}");
+    assert!(said.contains("continuing from") && !said.contains("again"), "{said}");
     same(&place.out("left"), &expected, "maps taken up");
     leave_after(&place, "lost", "simulation-1/dpgmm-2.json", "-KILL");
     fs::remove_file(place.out("lost").join(map(2))).unwrap();

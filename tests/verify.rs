@@ -66,8 +66,8 @@ fn a_finished_run_is_compared_with_its_manifest() {
     for (content, expected) in [
         (text.replace("\"samples.csv\"", "\"../samples.csv\""), "which is not a file within its folder"),
         (text.replace("\"samples.csv\"", "\"/etc/hostname\""), "which is not a file within its folder"),
-        (text[..text.len() / 2].to_owned(), "is no manifest"),
-        ("[]".to_owned(), "is no manifest"),
+        (text[..text.len() / 2].to_owned(), "is not a manifest"),
+        ("[]".to_owned(), "is not a manifest"),
     ] {
         fs::write(&manifest, content).unwrap();
         let (status, printed) = verify(&run);

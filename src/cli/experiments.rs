@@ -17,19 +17,19 @@ use crate::report::claims_table;
 use crate::settings::read_toml;
 
 /// Runs a whole experiment and judges the paper's claims; exit status 0 if all are reproduced, 1 if some
-/// are not, 2 on trouble.
+/// are not, 2 on an error.
 ///
 /// Writes into DIR: report.html (all of it in one page), claims.csv and claims.md (a row for each claim),
 /// figures/*.csv and *.svg (data and pictures of the paper's figures), samples.csv (a row for each draw),
 /// baselines.csv (a row for each clustering), simulation-N/ (distances, body maps, truth; in experiment 2
-/// p-P/simulation-N/ without distances), manifest.json and run.json. A run that was stopped goes on from what it
+/// p-P/simulation-N/ without distances), manifest.json and run.json. A run that was stopped continues from what it
 /// finished.
 #[derive(Args)]
 pub struct Reproduce {
     /// The experiment
     #[arg(value_parser = choice::<Experiment>())]
     experiment: Experiment,
-    /// A small run of under a minute that shows every part of the program working; its numbers are no replication
+    /// Run small, in under a minute, to see the whole program work; its numbers are not a replication
     #[arg(long)]
     quick: bool,
     #[arg(long, value_name = "N",
@@ -65,7 +65,7 @@ impl Reproduce {
         };
         ensure!(
             largest < sensors,
-            "setting `{setting}` goes up to {largest}, but {sensors} sensors span fewer dimensions"
+            "setting `{setting}` goes up to {largest}, but {sensors} sensors span fewer dimensions; lower it or add sensors"
         );
         prepare_folder(&self.out)?;
         let judged = reproduce::reproduce(&run)?;
@@ -84,7 +84,7 @@ impl Reproduce {
 ///
 /// Reads a design (reproduce/search.toml explains one) and writes into DIR: search.md (rounds, and which claims
 /// hold together), scores.csv (a row for each candidate and round), credits.csv (a row for each of its claims), best.toml
-/// (the settings of the best candidate, for --settings) and checkpoints/, from which a search that was stopped goes on.
+/// (the settings of the best candidate, for --settings) and checkpoints/, from which a search that was stopped continues.
 #[derive(Args)]
 pub struct Search {
     #[command(flatten)]
@@ -108,7 +108,7 @@ impl Search {
 ///
 /// Reads a design (reproduce/sensitivity.toml explains one) and writes into DIR: sensitivity.md (a page for people),
 /// figures/*.svg (a picture for each setting), sensitivity.csv (a row for each value, condition and measure),
-/// design.toml, and checkpoints/, from which a study that was stopped goes on.
+/// design.toml, and checkpoints/, from which a study that was stopped continues.
 #[derive(Args)]
 pub struct Sensitivity {
     /// Only one setting (or group of settings) of the design, by its name

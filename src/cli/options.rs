@@ -107,7 +107,7 @@ impl Choice for Scheme {
             Self::PerSensor,
             "Level 0 is no pressure; the others share each sensor's positive pressures equally",
         ),
-        (Self::Pooled, "The same with one set of thresholds for all sensors"),
+        (Self::Pooled, "As per-sensor, but with one set of thresholds for all sensors"),
         (Self::EqualWidth, "Levels of equal width between the smallest and the largest pressure"),
     ];
 }
@@ -115,7 +115,7 @@ impl Choice for Scheme {
 impl Choice for MapMethod {
     const VALUES: &'static [(Self, &'static str)] = &[
         (Self::Classical, "Classical scaling (Torgerson): the largest eigenvalues of the inner products"),
-        (Self::Smacof, "Metric scaling by majorisation, from the classical map on"),
+        (Self::Smacof, "Metric scaling by majorisation (SMACOF), starting from the classical map"),
         (Self::Nonmetric, "Nonmetric scaling (Kruskal): only the order of the distances counts"),
     ];
 }
@@ -123,14 +123,17 @@ impl Choice for MapMethod {
 impl Choice for Model {
     const VALUES: &'static [(Self, &'static str)] = &[
         (Self::Dpgmm, "Dirichlet-process Gaussian mixture; its tree is found afterwards by Prim's algorithm"),
-        (Self::DpgmmLj, "The same with latent joints (DPGMM-LJ), the paper's method"),
+        (Self::DpgmmLj, "DPGMM with latent joints (DPGMM-LJ), the paper's method"),
     ];
 }
 
 impl Choice for EdgeWeight {
     const VALUES: &'static [(Self, &'static str)] = &[
-        (Self::Literal, "Each child keeps the joint it has, whichever parent is weighed"),
-        (Self::Pairwise, "A joint is drawn for each pair of active components, and weighs that pair"),
+        (Self::Literal, "Each child keeps its joint, whichever parent it is weighed with"),
+        (
+            Self::Pairwise,
+            "A joint is drawn for each pair of active components, and gives the weight of that pair",
+        ),
         (Self::Collapsed, "The joint is integrated out"),
     ];
 }
@@ -138,7 +141,7 @@ impl Choice for EdgeWeight {
 impl Choice for Start {
     const VALUES: &'static [(Self, &'static str)] = &[
         (Self::Uniform, "Each sensor in a component drawn uniformly"),
-        (Self::KMeans, "The clusters of k-means from one random start"),
+        (Self::KMeans, "Components are the clusters of k-means from one random start"),
         (Self::Single, "All sensors in one component"),
     ];
 }

@@ -47,12 +47,12 @@ impl Command {
     }
 }
 
-/// Runs the program. Exit status, as `diff` has it: 0 done and every claim reproduced, 1 some claim not, 2 trouble,
+/// Runs the program. Exit status, as `diff` has it: 0 done and every claim reproduced, 1 some claim not, 2 an error,
 /// 130 interrupted.
 pub fn main() -> ExitCode {
     // Every file appears whole or not at all, so nothing needs to be put in order before leaving.
     let handler = ctrlc::set_handler(|| {
-        eprintln!("bodyschema: interrupted; start the same command again to go on from what is finished");
+        eprintln!("bodyschema: interrupted; start the same command again to continue from what is finished");
         std::process::exit(130);
     });
     if let Err(error) = handler {

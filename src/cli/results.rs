@@ -11,7 +11,7 @@ use crate::experiments::sensitivity;
 use crate::experiments::verify::{Finding, Outcome, against_manifest, against_reference, has_manifest};
 use crate::report::{page, plot};
 
-/// Draws the pictures of an experiment or study again, each from its table, and writes its page again.
+/// Renders the pictures of an experiment or study again, each from its table, and writes its page again.
 ///
 /// Reads DIR/figures/*.csv and writes an .svg beside each; then, where DIR holds a finished experiment, report.html from
 /// its claims.csv and manifest.json. Where DIR holds a sensitivity study: its pictures and sensitivity.md, from
@@ -36,7 +36,7 @@ impl Plot {
         let pictures = plot::render(&figures)?;
         ensure!(
             !pictures.is_empty(),
-            "{}: has none of the tables fig04-agent.csv to fig11b-tree.csv",
+            "{}: has no table of a figure (fig04-agent.csv to fig11b-tree.csv)",
             figures.display()
         );
         say(format!("{} pictures in {}", pictures.len(), figures.display()))?;
@@ -49,11 +49,12 @@ impl Plot {
 }
 
 /// Compares results with the hashes in their manifest, or with other results; exit status 0 if all agree, 1 if some do
-/// not, 2 on trouble.
+/// not, 2 on an error.
 ///
-/// With --against, compares every .csv and .npy file of REFERENCE with that of DIR: the same bytes; or all numbers
-/// within 1e-6 of the larger one or of 1; or, for samples.csv with scores, other draws whose rates (eligible, trees
-/// right) are within 4 standard errors in each condition. Lists what is not the same.
+/// With --against, compares every .csv and .npy file of REFERENCE with that of DIR. Two files agree if they have the same
+/// bytes; or if all numbers differ by at most 1e-6 times the larger one or 1; or, for a samples.csv with scores, if the
+/// rates (eligible draws, right trees) are within 4 standard errors in each condition. Lists the files that are not the
+/// same.
 #[derive(Args)]
 pub struct Verify {
     /// Folder of results
@@ -79,7 +80,7 @@ impl Verify {
         Ok(if agree { ExitCode::SUCCESS } else { ExitCode::FAILURE })
     }
 
-    /// Lists what is not the same, and says whether all agrees.
+    /// Lists the files that are not the same, and returns whether all agree.
     fn tell(&self, findings: &[Finding], with: &str) -> Result<bool> {
         for finding in findings.iter().filter(|finding| finding.outcome != Outcome::Same) {
             say(finding)?;

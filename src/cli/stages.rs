@@ -70,15 +70,15 @@ impl Simulate {
 /// H(X|Y) + H(Y|X) between all pairs of sensors (float64, M x M, bits).
 #[derive(Args)]
 pub struct Distance {
-    /// Pressures, or with --symbols symbols: a .npy file with a row for each sample and a column for each sensor
+    /// Pressures, or symbols with --symbols: a .npy file with a row for each sample and a column for each sensor
     tactile: PathBuf,
     #[arg(long, value_parser = choice::<Scheme>(),
           help = with_default("How pressures become levels", paper().quantise.scheme))]
     scheme: Option<Scheme>,
     #[arg(long, value_name = "N", conflicts_with = "symbols",
-          help = with_default("Number of levels, 2 to 256; no pressure is one of them", paper().quantise.levels))]
+          help = with_default("Number of levels, 2 to 256, the level for no pressure included", paper().quantise.levels))]
     levels: Option<usize>,
-    /// The input is symbols already: whole numbers from 0 to 255
+    /// The file holds symbols, not pressures: whole numbers from 0 to 255
     #[arg(long, conflicts_with = "scheme")]
     symbols: bool,
     #[command(flatten)]
@@ -104,7 +104,7 @@ impl Distance {
         let constant = symbols.constant_sensors();
         if !constant.is_empty() {
             eprintln!(
-                "bodyschema: {}: {} of {} sensors never change and tell nothing (the first is sensor {})",
+                "bodyschema: {}: {} of {} sensors never change, so their distances carry no information (the first is sensor {})",
                 input.display(),
                 constant.len(),
                 symbols.sensors(),
@@ -180,12 +180,12 @@ impl Map {
     }
 }
 
-/// Stages 6 and 7: draws body schemas; with the truth given, evaluates them.
+/// Stages 6 and 7: draws body schemas and, if the truth is given, evaluates them.
 ///
 /// Reads coordinates (M x D) and writes into DIR: assignments.npy (int32, draws x M, component of each
-/// sensor), samples.csv (a row for each draw: chain,parts,log_posterior, and with the truth given
-/// ari,eligible,tree_correct) and trees.csv (chain,child,parent and, for dpgmm-lj, the joint's place on the
-/// body map, x1 ... xD). With --keep all, a column `sweep` follows the chain.
+/// sensor), samples.csv (a row for each draw: chain,parts,log_posterior, and, if the truth is given,
+/// ari,eligible,tree_correct) and trees.csv (chain,child,parent and, for dpgmm-lj, the position of the joint
+/// on the body map, x1 ... xD). With --keep all, a column `sweep` follows the chain.
 #[derive(Args)]
 pub struct Infer {
     /// Body map: a .npy file, M x D
@@ -193,7 +193,7 @@ pub struct Infer {
     /// The mixture
     #[arg(long, value_parser = choice::<Model>(), default_value = "dpgmm-lj")]
     model: Model,
-    #[arg(long, value_name = "K", help = with_default("Components of the weak-limit approximation", paper().schema.components))]
+    #[arg(long, value_name = "K", help = with_default("Number of components of the weak-limit approximation", paper().schema.components))]
     components: Option<usize>,
     #[arg(long, value_name = "N", help = with_default("Number of independent chains", paper().schema.chains))]
     chains: Option<usize>,
@@ -203,12 +203,12 @@ pub struct Infer {
           help = with_default("Edge weight of the minimum spanning tree", paper().schema.edge_weight))]
     edge_weight: Option<EdgeWeight>,
     #[arg(long, value_parser = choice::<Start>(),
-          help = with_default("Components that each chain starts with", paper().schema.start))]
+          help = with_default("Components of the sensors when a chain starts", paper().schema.start))]
     start: Option<Start>,
     #[arg(long, value_parser = choice::<Keep>(),
           help = with_default("Draws of each chain that are kept", paper().schema.keep))]
     keep: Option<Keep>,
-    #[arg(long, value_name = "N", help = with_default("Sweeps dropped with --keep all", paper().schema.burn_in))]
+    #[arg(long, value_name = "N", help = with_default("Sweeps of each chain that are dropped with --keep all", paper().schema.burn_in))]
     burn_in: Option<usize>,
     #[command(flatten)]
     common: SettingsAndSeed,

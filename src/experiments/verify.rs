@@ -1,8 +1,8 @@
 //! Verify results: compare a folder with the hashes in its manifest, or with another folder.
 //!
-//! On one class of CPU the same settings and seed give the same bytes. On another, last digits may differ; the
-//! movement, which is chaotic, is then another one, and so is all that follows from it. From one body map on, a
-//! chain may take another turn, but the rates over many chains stay within their standard errors.
+//! On one class of CPU the same settings and seed give the same bytes. On another, last digits may differ. The
+//! movement is chaotic, so it then becomes another movement, and all that follows from it changes. From the same body map,
+//! a single chain may end elsewhere, but the rates over many chains stay within their standard errors.
 
 use std::collections::BTreeMap;
 use std::fmt::{self, Display};
@@ -33,15 +33,15 @@ pub struct Finding {
 /// How a file compares with what it should be.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Outcome {
-    /// Byte for byte.
+    /// The same bytes.
     Same,
     /// All numbers within [`TOLERANCE`], all else the same.
     Close(String),
     /// Other draws, whose rates are within [`STANDARD_ERRORS`].
     SameRates(String),
-    /// Neither; says where.
+    /// Different; says where.
     Differs(String),
-    /// It is not there.
+    /// The file does not exist.
     Missing,
 }
 
@@ -125,7 +125,7 @@ pub fn against_reference(folder: &Path, reference: &Path) -> Result<Vec<Finding>
     let mut files = Vec::new();
     list(reference, "", &mut files)?;
     if files.is_empty() {
-        return Err(FileError::new(reference, "holds no .csv and no .npy file to compare with"));
+        return Err(FileError::new(reference, "has no .csv or .npy file to compare with"));
     }
     for file in files {
         let (path, other) = (folder.join(&file), reference.join(&file));
@@ -215,7 +215,7 @@ fn tables(path: &Path, reference: &Path) -> Result<Outcome, FileError> {
     let Some(detail) = first_difference(&own, &other) else {
         return Ok(Outcome::Close("all numbers are".to_owned()));
     };
-    // Draws that took another turn.
+    // Other draws of the same posterior may still have the same rates.
     match (rates(path), rates(reference)) {
         (Some(own), Some(other)) => Ok(compare_rates(&own, &other, &detail)),
         _ => Ok(Outcome::Differs(detail)),
@@ -237,7 +237,7 @@ fn first_difference(own: &[Vec<String>], other: &[Vec<String>]) -> Option<String
     })
 }
 
-/// A draw of any table of them.
+/// A row of any table of draws.
 #[derive(Deserialize)]
 struct DrawRow {
     simulation: Option<usize>,

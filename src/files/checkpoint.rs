@@ -1,7 +1,7 @@
 //! Keep finished work of an experiment or a study in files, from which an interrupted run continues.
 //!
-//! A part is taken up only if its file is whole (by its hash) and of the same program, settings and seed, so
-//! that nothing stale or half-written gets into a result.
+//! A checkpoint is used only if its file is whole (by its hash) and of the same program, settings and seed, so that
+//! nothing stale or half-written gets into a result.
 
 use std::fs;
 use std::io::ErrorKind;
@@ -21,7 +21,7 @@ pub struct Checkpoints {
     folder: PathBuf,
     /// What the results depend on.
     key: String,
-    /// Whether the user was told that parts are taken up, and that others are of another run.
+    /// Whether the user was told that checkpoints are used, and that some are of another run.
     told: [AtomicBool; 2],
 }
 
@@ -33,16 +33,16 @@ struct File {
 }
 
 impl Checkpoints {
-    /// Those in the folder `out` of an experiment, of a run whose results depend on `inputs` alone.
+    /// The checkpoints in the folder `out`, of a run whose results depend on `inputs` alone.
     pub fn new(out: &Path, inputs: &impl Serialize) -> Self {
         let inputs = serde_json::to_string(inputs).expect("inputs are plain data");
         let key = sha256_of_text(&format!("{}{inputs}", program()));
         Self { folder: out.join("checkpoints"), key, told: Default::default() }
     }
 
-    /// What an earlier run found in a part of this name, if it finished it.
-    pub fn recall<T: DeserializeOwned>(&self, part: &str) -> Option<T> {
-        let path = self.path(part);
+    /// What an earlier run kept under a name; `None` if it kept nothing that can be used.
+    pub fn recall<T: DeserializeOwned>(&self, name: &str) -> Option<T> {
+        let path = self.path(name);
         let text = match fs::read_to_string(&path) {
             Ok(text) => text,
             Err(error) if error.kind() == ErrorKind::NotFound => return None,
@@ -50,25 +50,25 @@ impl Checkpoints {
         };
         let file: File = match serde_json::from_str(&text) {
             Ok(file) => file,
-            Err(_) => return self.damaged(&path, "is no checkpoint"),
+            Err(_) => return self.damaged(&path, "is not a checkpoint"),
         };
         if file.sha256 != sha256_of_text(file.content.get()) {
-            return self.damaged(&path, "does not have the hash that it states");
+            return self.damaged(&path, "its content does not have the stated hash");
         }
         if file.key != self.key {
             if !self.told[1].swap(true, Ordering::Relaxed) {
                 eprintln!(
-                    "bodyschema: {}: parts of a run with other settings or of another program are not used",
+                    "bodyschema: {}: checkpoints of other settings or of another program are not used",
                     self.folder.display()
                 );
             }
             return None;
         }
         let Ok(content) = serde_json::from_str(file.content.get()) else {
-            return self.damaged(&path, "holds something else");
+            return self.damaged(&path, "holds results of another kind");
         };
         if !self.told[0].swap(true, Ordering::Relaxed) {
-            eprintln!("bodyschema: {}: going on from what an earlier run finished", self.folder.display());
+            eprintln!("bodyschema: {}: continuing from what an earlier run finished", self.folder.display());
         }
         Some(content)
     }
@@ -78,15 +78,15 @@ impl Checkpoints {
         None
     }
 
-    /// Keeps what was found in a part.
+    /// Keeps a result under a name.
     ///
     /// # Errors
     /// If it cannot be written.
-    pub fn keep<T: Serialize>(&self, part: &str, content: &T) -> Result<(), FileError> {
+    pub fn keep<T: Serialize>(&self, name: &str, content: &T) -> Result<(), FileError> {
         let content = serde_json::value::to_raw_value(content).expect("results are plain data");
         let file = File { key: self.key.clone(), sha256: sha256_of_text(content.get()), content };
         let text = serde_json::to_string(&file).expect("a checkpoint is plain data");
-        write_text(&self.path(part), &text)
+        write_text(&self.path(name), &text)
     }
 
     /// Removes all of them, when the run is finished.
@@ -102,8 +102,8 @@ impl Checkpoints {
         }
     }
 
-    fn path(&self, part: &str) -> PathBuf {
-        self.folder.join(format!("{part}.json"))
+    fn path(&self, name: &str) -> PathBuf {
+        self.folder.join(format!("{name}.json"))
     }
 }
 
@@ -119,7 +119,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_part_is_taken_up_whole_and_of_the_same_run_or_not_at_all() {
+    fn a_checkpoint_is_used_whole_and_of_the_same_run_or_not_at_all() {
         let folder = tempfile::tempdir().unwrap();
         // The hash of this program is slow to find again and again.
         let same = Checkpoints::new(folder.path(), &("settings", 1));

@@ -84,15 +84,15 @@ impl Manifest {
     /// Reads the manifest of a folder.
     ///
     /// # Errors
-    /// If there is none, or the file is no manifest.
+    /// If there is no manifest, or the file is not one.
     pub fn read(folder: &Path) -> Result<Self, FileError> {
         let path = folder.join(MANIFEST);
         if !path.exists() {
-            return Err(FileError::new(&path, "no such file; only finished results have a manifest"));
+            return Err(FileError::new(&path, "no such file; a run writes its manifest when it is finished"));
         }
         let text = read_text(&path)?;
         serde_json::from_str(&text)
-            .map_err(|error| FileError::new(&path, format!("is no manifest of results: {error}")))
+            .map_err(|error| FileError::new(&path, format!("is not a manifest of results: {error}")))
     }
 
     /// Writes it into a folder.

@@ -56,22 +56,24 @@ fn write<T: npyz::AutoSerialize>(
 pub fn read_tactile(path: &Path) -> Result<Tactile, FileError> {
     let matrix = Matrix::read(path, Order::Fortran, |value| match value {
         value if !value.is_finite() => Err("a pressure must be a finite number"),
-        value if value < 0.0 => Err("a pressure must not be negative (if these are symbols, say --symbols)"),
-        value if value > f64::from(f32::MAX) => Err("a pressure must be in the range of float32"),
+        value if value < 0.0 => {
+            Err("a pressure must not be negative (if the file holds symbols, add --symbols)")
+        }
+        value if value > f64::from(f32::MAX) => Err("a pressure must not exceed the largest float32"),
         value => Ok(value as f32),
     })?;
     check_sensors(path, &matrix)?;
     Ok(Tactile { samples: matrix.rows, pressures: matrix.values })
 }
 
-/// A matrix by sensors and times, in place of times and sensors, asks for distances beyond any memory.
+/// Refuses a matrix of too many columns, as one of sensors × times has: its distances would not fit the memory.
 fn check_sensors<T>(path: &Path, matrix: &Matrix<T>) -> Result<(), FileError> {
     if matrix.columns <= MAX_SENSORS {
         return Ok(());
     }
     let message = format!(
-        "has {} rows and {} columns; a row is a time and a column a sensor, of which there may be {MAX_SENSORS}: \
-         is it transposed?",
+        "has {} rows and {} columns; a row is a time and a column a sensor, and {MAX_SENSORS} sensors are the \
+         maximum: is it transposed?",
         matrix.rows, matrix.columns
     );
     Err(FileError::new(path, message))
@@ -102,7 +104,8 @@ pub fn read_distances(path: &Path) -> Result<Distances, FileError> {
     })?;
     let sensors = matrix.rows;
     if matrix.columns != sensors {
-        let message = format!("distances must be a square matrix, but it is {sensors} x {}", matrix.columns);
+        let message =
+            format!("distances must be a square matrix, but the shape is {sensors} x {}", matrix.columns);
         return Err(FileError::new(path, message));
     }
     let distances = Distances { sensors, values: matrix.values };
@@ -139,57 +142,26 @@ struct Matrix<T> {
 }
 
 impl<T: Copy> Matrix<T> {
-    /// Reads a matrix of float32, float64 or any integer type into the order that is asked for, each value checked by `convert`.
+    /// Reads a matrix of float32, float64 or any integer type into the order `wanted`, each value checked by `convert`.
     fn read(
         path: &Path,
         wanted: Order,
         convert: impl Fn(f64) -> Result<T, &'static str>,
     ) -> Result<Self, FileError> {
-        let broken = |error: io::Error| match error.kind() {
-            io::ErrorKind::NotFound => FileError::new(path, "no such file"),
-            _ => FileError::new(path, format!("cannot be read as a .npy file: {error}")),
-        };
-        let file = File::open(path).map_err(broken)?;
-        let bytes = file.metadata().map_err(broken)?.len();
-        let mut reader = BufReader::with_capacity(1 << 20, file);
-        check_header(reader.fill_buf().map_err(broken)?).map_err(|message| FileError::new(path, message))?;
-        let npy = NpyFile::new(reader).map_err(broken)?;
-
-        let &[rows, columns] = npy.shape() else {
-            let message = format!("must have two dimensions, but its shape is {:?}", npy.shape());
-            return Err(FileError::new(path, message));
-        };
-        if rows == 0 || columns == 0 {
-            return Err(FileError::new(path, format!("is empty: its shape is {rows} x {columns}")));
-        }
-        let dtype = npy.dtype();
-        let unusable = || {
-            FileError::new(
-                path,
-                format!("must hold float32, float64 or integers, but its dtype is {}", dtype.descr()),
-            )
-        };
-        let DType::Plain(kind) = &dtype else { return Err(unusable()) };
-        let width = kind.num_bytes().ok_or_else(unusable)? as u64;
-        // Before anything is allocated: a header can promise any size.
-        if rows.checked_mul(columns).and_then(|n| n.checked_mul(width)).is_none_or(|size| size > bytes) {
-            let message = format!(
-                "is truncated: its header promises {rows} x {columns} values, the file has {bytes} bytes"
-            );
-            return Err(FileError::new(path, message));
-        }
-        let (rows, columns, order) = (rows as usize, columns as usize, npy.order());
-        let place = |at: usize| match order {
-            Order::C => (at / columns, at % columns),
-            Order::Fortran => (at % rows, at / rows),
-        };
+        let (npy, bytes) = open(path)?;
+        let (rows, columns) = shape(path, &npy, bytes)?;
+        let order = npy.order();
         let checked = |at: usize, value: f64| {
             convert(value).map_err(|message| {
-                let (row, column) = place(at);
+                let (row, column) = match order {
+                    Order::C => (at / columns, at % columns),
+                    Order::Fortran => (at % rows, at / rows),
+                };
                 FileError::new(path, format!("row {row}, column {column}: {value}; {message}"))
             })
         };
-        let values = match (kind.type_char(), width) {
+        let (kind, width) = plain_type(path, &npy)?;
+        let values = match (kind, width) {
             (TypeChar::Float, 4) => collect(npy, path, |at, x: f32| checked(at, x.into())),
             (TypeChar::Float, 8) => collect(npy, path, |at, x: f64| checked(at, x)),
             (TypeChar::Int, 1) => collect(npy, path, |at, x: i8| checked(at, x.into())),
@@ -200,7 +172,7 @@ impl<T: Copy> Matrix<T> {
             (TypeChar::Uint, 2) => collect(npy, path, |at, x: u16| checked(at, x.into())),
             (TypeChar::Uint, 4) => collect(npy, path, |at, x: u32| checked(at, x.into())),
             (TypeChar::Uint, 8) => collect(npy, path, |at, x: u64| checked(at, x as f64)),
-            _ => Err(unusable()),
+            _ => Err(wrong_type(path, &npy)),
         }?;
         let values = match (order, wanted) {
             (Order::C, Order::Fortran) => transpose(&values, rows, columns),
@@ -209,6 +181,59 @@ impl<T: Copy> Matrix<T> {
         };
         Ok(Self { rows, columns, values })
     }
+}
+
+/// A `.npy` file whose header was read.
+type Npy = NpyFile<BufReader<File>>;
+
+/// Opens a `.npy` file and reads its header; also returns the length of the file in bytes.
+fn open(path: &Path) -> Result<(Npy, u64), FileError> {
+    let broken = |error: io::Error| match error.kind() {
+        io::ErrorKind::NotFound => FileError::new(path, "no such file"),
+        _ => FileError::new(path, format!("cannot be read as a .npy file: {error}")),
+    };
+    let file = File::open(path).map_err(broken)?;
+    let bytes = file.metadata().map_err(broken)?.len();
+    let mut reader = BufReader::with_capacity(1 << 20, file);
+    check_header(reader.fill_buf().map_err(broken)?).map_err(|message| FileError::new(path, message))?;
+    Ok((NpyFile::new(reader).map_err(broken)?, bytes))
+}
+
+/// Rows and columns of a matrix that is not empty and for whose values a file of `bytes` bytes is long enough.
+///
+/// This is checked before anything is allocated, since a header can state any size.
+fn shape(path: &Path, npy: &Npy, bytes: u64) -> Result<(usize, usize), FileError> {
+    let &[rows, columns] = npy.shape() else {
+        let message = format!("must have two dimensions, but its shape is {:?}", npy.shape());
+        return Err(FileError::new(path, message));
+    };
+    if rows == 0 || columns == 0 {
+        return Err(FileError::new(path, format!("is empty: its shape is {rows} x {columns}")));
+    }
+    let (_, width) = plain_type(path, npy)?;
+    if rows.checked_mul(columns).and_then(|n| n.checked_mul(width)).is_none_or(|size| size > bytes) {
+        let message = format!(
+            "is truncated: its header states {rows} x {columns} values, but the file has only {bytes} bytes"
+        );
+        return Err(FileError::new(path, message));
+    }
+    Ok((rows as usize, columns as usize))
+}
+
+/// Kind and width in bytes of the values.
+fn plain_type(path: &Path, npy: &Npy) -> Result<(TypeChar, u64), FileError> {
+    match npy.dtype() {
+        DType::Plain(kind) => {
+            let width = kind.num_bytes().ok_or_else(|| wrong_type(path, npy))?;
+            Ok((kind.type_char(), width as u64))
+        }
+        _ => Err(wrong_type(path, npy)),
+    }
+}
+
+fn wrong_type(path: &Path, npy: &Npy) -> FileError {
+    let dtype = npy.dtype().descr();
+    FileError::new(path, format!("must hold float32, float64 or integers, but its dtype is {dtype}"))
 }
 
 /// Whether the header is one that NumPy would write, given the start of a file.
@@ -231,20 +256,20 @@ fn check_header(start: &[u8]) -> Result<(), &'static str> {
         _ => return Ok(()),
     };
     if length > MAX_CHARACTERS {
-        return Err("has a header of more than 10000 characters, as NumPy never writes");
+        return Err("has a header of more than 10000 characters; save the matrix again with numpy.save");
     }
     let text = &text[..length.min(text.len())];
     let brackets = text.iter().filter(|character| b"([{".contains(character)).count();
     let digits = text.iter().filter(|character| character.is_ascii_digit()).count();
     let hexadecimal = text.windows(2).any(|pair| pair.eq_ignore_ascii_case(b"0x"));
     if brackets > MAX_BRACKETS || digits > MAX_DIGITS || hexadecimal {
-        return Err("has a header that is not that of a matrix: too many brackets or digits");
+        return Err("has a header that is not of a plain matrix; save the matrix again with numpy.save");
     }
     Ok(())
 }
 
 fn collect<S: Deserialize, T>(
-    npy: NpyFile<BufReader<File>>,
+    npy: Npy,
     path: &Path,
     convert: impl Fn(usize, S) -> Result<T, FileError>,
 ) -> Result<Vec<T>, FileError> {

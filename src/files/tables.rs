@@ -68,7 +68,12 @@ pub fn read_truth(labels: &Path, tree: &Path, sensors: usize) -> Result<Truth, F
     for LabelRow { sensor, part } in read_rows(labels)? {
         match part_of.get_mut(sensor) {
             Some(slot @ None) => *slot = Some(part),
-            Some(Some(_)) => return Err(FileError::new(labels, format!("sensor {sensor} has two parts"))),
+            Some(Some(_)) => {
+                return Err(FileError::new(
+                    labels,
+                    format!("sensor {sensor} has two parts; give each sensor one row"),
+                ));
+            }
             None => {
                 let message =
                     format!("sensor {sensor} is not on the body map, which has sensors 0 to {}", sensors - 1);
@@ -77,7 +82,10 @@ pub fn read_truth(labels: &Path, tree: &Path, sensors: usize) -> Result<Truth, F
         }
     }
     if let Some(sensor) = part_of.iter().position(Option::is_none) {
-        return Err(FileError::new(labels, format!("sensor {sensor} of {sensors} has no part")));
+        return Err(FileError::new(
+            labels,
+            format!("sensor {sensor} of {sensors} has no part; give each sensor one row"),
+        ));
     }
     let truth = Truth {
         labels: part_of.into_iter().flatten().collect(),
@@ -94,22 +102,27 @@ fn check_tree(truth: &Truth) -> Result<(), String> {
     parts.dedup();
     let index =
         |part| parts.binary_search(&part).map_err(|_| format!("part {part} has no sensor in the labels"));
-    // Each part points towards the one that stands for all it is connected with.
+    // Each part points towards the representative of all that it is connected with.
     let mut towards: Vec<usize> = (0..parts.len()).collect();
     let mut cycle = false;
     for &(child, parent) in &truth.tree {
-        let (child, parent) = (last(&mut towards, index(child)?), last(&mut towards, index(parent)?));
+        let (child, parent) =
+            (representative(&mut towards, index(child)?), representative(&mut towards, index(parent)?));
         cycle |= child == parent;
         towards[child] = parent;
     }
     if cycle || truth.tree.len() + 1 != parts.len() {
-        return Err(format!("{} edges do not make a tree over {} parts", truth.tree.len(), parts.len()));
+        return Err(format!(
+            "{} edges do not make a tree over {} parts: give one edge fewer than parts, without a cycle",
+            truth.tree.len(),
+            parts.len()
+        ));
     }
     Ok(())
 }
 
-/// The part that stands for all that `part` is connected with. Ways are halved, so that each is short.
-fn last(towards: &mut [usize], mut part: usize) -> usize {
+/// The representative of all parts that `part` is connected with (union–find with path halving).
+fn representative(towards: &mut [usize], mut part: usize) -> usize {
     while towards[part] != part {
         towards[part] = towards[towards[part]];
         part = towards[part];
@@ -155,7 +168,7 @@ fn plain(error: &csv::Error) -> String {
     }
 }
 
-/// Writes a row a sample: `time_s`, then both angles of each joint in rad, T + 1 rows.
+/// Writes a row for each of the T + 1 samples: `time_s`, then both angles of each joint in rad.
 pub fn write_joint_angles(path: &Path, trajectory: &Trajectory, interval: f64) -> Result<(), FileError> {
     write_whole(path, |file| {
         let mut writer = csv::Writer::from_writer(file);
@@ -188,7 +201,7 @@ struct DrawRow {
     tree_correct: Option<bool>,
 }
 
-/// Writes `samples.csv`, a row a draw: `chain`, `sweep` where a chain has several draws, `parts`,
+/// Writes `samples.csv`, a row for each draw: `chain`, `sweep` where a chain has several draws, `parts`,
 /// `log_posterior`, and `ari`, `eligible` and `tree_correct` if there are scores.
 pub fn write_draws(
     path: &Path,

@@ -18,7 +18,7 @@ pub fn write_whole(
     // A link keeps pointing where it does; a device or pipe is not replaced.
     let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
     if target.exists() && !target.is_file() {
-        return Err(FileError::new(path, "cannot be written: it exists and is no regular file"));
+        return Err(FileError::new(path, "cannot be written: it is not a regular file; choose another name"));
     }
     let aside = target.with_added_extension("partial");
     let attempt = || -> io::Result<()> {
@@ -37,10 +37,10 @@ pub fn write_whole(
     })
 }
 
-/// Makes sure, before any work is done for it, that a folder is there and can be written to.
+/// Makes a folder if it does not exist, and checks that it can be written to, before any work is done for it.
 ///
 /// # Errors
-/// If it cannot.
+/// If it cannot be made or written to.
 pub fn prepare_folder(path: &Path) -> Result<(), FileError> {
     let probe = path.join(".bodyschema.partial");
     fs::create_dir_all(path)
@@ -60,7 +60,7 @@ pub fn write_text(path: &Path, text: &str) -> Result<(), FileError> {
 /// The text of a file.
 ///
 /// # Errors
-/// If it cannot be read, or is no text.
+/// If it cannot be read, or is not UTF-8 text.
 pub fn read_text(path: &Path) -> Result<String, FileError> {
     fs::read_to_string(path).map_err(|error| FileError::new(path, format!("cannot be read: {error}")))
 }

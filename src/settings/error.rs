@@ -17,7 +17,7 @@ pub enum SettingsError {
         /// Why.
         reason: io::Error,
     },
-    /// The file is no TOML, or a value has the wrong type.
+    /// The file is not TOML, or a value has the wrong type.
     #[error("{origin}: {message}")]
     Malformed {
         /// The file.

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::numerics::range::{Checked, check, count};
 
-/// Most values in a list of settings: far above how many panels, parts or curves a picture can show.
+/// Maximum number of values in a list of settings: far above how many panels or curves a picture can show.
 pub const MAX_LISTED: usize = 60;
 
 /// The conditions that an experiment repeats.
@@ -47,7 +47,7 @@ impl ExperimentSettings {
     }
 }
 
-/// Whether values rise strictly and are neither none nor more than [`MAX_LISTED`].
+/// Whether a list is not empty, rises strictly, and has at most [`MAX_LISTED`] values.
 pub fn rising<T: PartialOrd>(values: &[T]) -> bool {
     (1..=MAX_LISTED).contains(&values.len()) && values.windows(2).all(|pair| pair[0] < pair[1])
 }

@@ -17,7 +17,7 @@ use crate::files::one_line;
 pub const PAPER: &str = include_str!("../../reproduce/paper.toml");
 const QUICK: &str = include_str!("../../reproduce/quick.toml");
 
-/// Longest settings file, in bytes: far above any, and far below what a device or a wrong file may have.
+/// Maximum length of a settings file, in bytes: far above any, and far below what a device or a wrong file may have.
 const MAX_FILE_BYTES: u64 = 1 << 20;
 
 impl Settings {
@@ -77,9 +77,9 @@ pub fn read_toml(path: &Path) -> Result<String, SettingsError> {
     let mut text = String::new();
     let read = File::open(path).and_then(|file| file.take(MAX_FILE_BYTES + 1).read_to_string(&mut text));
     match read {
-        Ok(length) if length as u64 > MAX_FILE_BYTES => {
-            Err(io::Error::other(format!("it is longer than {MAX_FILE_BYTES} bytes")))
-        }
+        Ok(length) if length as u64 > MAX_FILE_BYTES => Err(io::Error::other(format!(
+            "it is longer than {MAX_FILE_BYTES} bytes, the maximum for a settings file"
+        ))),
         Ok(_) => Ok(text),
         Err(error) => Err(error),
     }

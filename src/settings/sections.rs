@@ -44,8 +44,8 @@ pub struct Settings {
 }
 
 impl Settings {
-    /// Checks every range that needs no data, so that a run neither asks the physics engine for what it would abort on
-    /// nor takes more memory than a large computer has, or more time than a life.
+    /// Checks every range that needs no data. So a run asks the physics engine for nothing that it would abort on, fits the
+    /// memory of a large computer, and ends in a reasonable time.
     ///
     /// # Errors
     /// [`SettingsError::OutOfRange`] for the first value that cannot be used.
@@ -72,7 +72,7 @@ impl Settings {
         PARTS.saturating_mul(self.skin.sensors_per_part())
     }
 
-    /// The body has no more sensors than have distances that fit the memory.
+    /// Checks that the distances between all sensors fit the memory.
     fn check_sensors(&self) -> Checked {
         let each = self.skin.sensors_per_part();
         check(
@@ -83,8 +83,8 @@ impl Settings {
         )
     }
 
-    /// Samples are whole steps apart, and not too many to keep or to wait for: 2 billion pressures are 8 GB, 20 million
-    /// samples 13 GB of poses; a billion steps take hours; of a longer time, figures show nothing.
+    /// Checks that samples are whole steps apart, and not too many to keep or to wait for: 2 billion pressures are 8 GB,
+    /// 20 million samples 13 GB of poses, and a billion steps take hours.
     fn check_times(&self) -> Checked {
         let (interval, step, duration) = (self.sense.interval, self.physics.step, self.physics.duration);
         let ratio = interval / step;
@@ -103,7 +103,7 @@ impl Settings {
         )
     }
 
-    /// The matrices of all components fit the memory in every number of dimensions.
+    /// Checks that the matrices of all components fit the memory in every number of dimensions.
     fn check_matrices(&self) -> Checked {
         let (experiment, components) = (&self.experiment, self.schema.components);
         let largest = experiment.dimensions.last().copied().unwrap_or(0);
@@ -114,7 +114,7 @@ impl Settings {
         Ok(())
     }
 
-    /// There are as many sensors as clusters to find.
+    /// Checks that no clustering asks for more clusters than there are sensors.
     fn check_clusters(&self) -> Checked {
         let (clusters, most) = (&self.baselines.clusters, self.sensors().min(1000));
         check(
@@ -125,7 +125,7 @@ impl Settings {
         )
     }
 
-    /// The draws of all simulations and conditions fit the memory.
+    /// Checks that the draws of all simulations and conditions fit the memory.
     fn check_draws(&self) -> Checked {
         let simulations = self.experiment.simulations;
         let conditions = (2 * self.experiment.dimensions.len()).max(self.experiment.coordinations.len());

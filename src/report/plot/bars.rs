@@ -29,7 +29,7 @@ pub fn parts(rows: &[PartsRow], mark: Option<&Mark>) -> Result<String, PlotError
     let dimensions = few("d", rows.iter().map(|row| row.dimension))?;
     let of = |counting| rows.iter().filter(move |row| row.counting == counting);
     let Some(most) = of(Counting::AllDraws).map(|row| row.count).max() else {
-        return plot_error("has no row of all draws");
+        return plot_error("has no row that counts all draws");
     };
 
     let mut legend = Legend::default();
@@ -121,7 +121,7 @@ fn histogram<'a>(
 pub fn boxes(rows: &[BoxRow]) -> Result<String, PlotError> {
     check("d", rows.iter().map(|row| row.dimension as f64), 1.0, 1e6)?;
     if few("d", rows.iter().map(|row| row.dimension))?.len() < rows.len() {
-        return plot_error("has two boxes of one d");
+        return plot_error("has two rows of the same d");
     }
     for row in rows {
         let ends = [

@@ -11,7 +11,7 @@ use super::canvas::{
 };
 use super::values::check;
 
-/// A value with its 95 % interval; none where there is no sample.
+/// A value with its 95 % interval; `None` where there is no draw to compute it from.
 pub type Cell = Option<(f64, Option<(f64, f64)>)>;
 
 /// A line of the picture.

@@ -36,7 +36,7 @@ impl Groups {
         check("coordinate", rows.iter().flat_map(|row| [row.x1, row.x2]), -1e6, 1e6)?;
         check("coordinate", rows.iter().filter_map(|row| row.x3), -1e6, 1e6)?;
         if rows.iter().any(|row| row.x3.is_some() != (dims == 3)) {
-            return plot_error(format!("is not of {dims} dimensions"));
+            return plot_error(format!("must have coordinates in {dims} dimensions"));
         }
         let sensors = || rows.iter().filter(|row| row.kind == MapPoint::Sensor);
         if sensors().next().is_none() {

@@ -35,10 +35,10 @@ const FIGURES: [(&str, Picture); 14] = [
     }),
 ];
 
-/// Draws NAME.svg for every figure NAME whose NAME.csv is in `folder`, and returns what it wrote.
+/// Writes NAME.svg for every figure NAME whose NAME.csv is in `folder`, and returns the names of what it wrote.
 ///
 /// # Errors
-/// If a table is not that of its figure, or a picture cannot be written. No picture is ever written in part.
+/// If a table is not that of its figure, or a picture cannot be written. Each picture appears whole or not at all.
 pub fn render(folder: &Path) -> Result<Vec<String>, FileError> {
     let published = figures();
     let mut written = Vec::new();

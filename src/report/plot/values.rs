@@ -29,7 +29,7 @@ pub fn few<T: PartialOrd>(what: &str, values: impl IntoIterator<Item = T>) -> Re
     let values = distinct(values);
     if values.len() > MAX_LISTED {
         return plot_error(format!(
-            "has {} different values of {what}, more than a picture can show",
+            "has {} different values of {what}, but a picture can show at most {MAX_LISTED}",
             values.len()
         ));
     }

@@ -125,7 +125,7 @@ fn tables(folder: &Path) {
 }
 
 #[test]
-fn every_figure_with_a_table_is_drawn_and_always_the_same() {
+fn every_figure_with_a_table_is_rendered_and_always_the_same() {
     let folder = tempfile::tempdir().unwrap();
     assert!(render(folder.path()).unwrap().is_empty());
     tables(folder.path());
@@ -188,7 +188,7 @@ fn a_condition_without_a_sample_is_marked() {
 }
 
 #[test]
-fn a_table_that_cannot_be_drawn_is_named_with_its_mistake() {
+fn a_table_that_cannot_be_rendered_is_named_with_its_mistake() {
     let rejects = |name: &str, text: &str, expected: &str| {
         let folder = tempfile::tempdir().unwrap();
         std::fs::write(folder.path().join(format!("{name}.csv")), text).unwrap();
@@ -205,11 +205,11 @@ fn a_table_that_cannot_be_drawn_is_named_with_its_mistake() {
     rejects("fig06a-map-2d", &format!("{map}sensor,0,1,0.5,NaN\n"), "coordinate NaN");
     rejects("fig06a-map-2d", &format!("{map}sensor,0,,0.5,0.5\n"), "sensor 0 has no group");
     rejects("fig06a-map-2d", &format!("{map}joint,0,,0.5,0.5\n"), "has no sensors");
-    rejects("fig06b-map-3d", &format!("{map}sensor,0,1,0.5,0.5\n"), "is not of 3 dimensions");
+    rejects("fig06b-map-3d", &format!("{map}sensor,0,1,0.5,0.5\n"), "must have coordinates in 3 dimensions");
     rejects("fig04-agent", "part,kind,x_m,y_m,z_m\n0,sensor,0,0,0\n", "part 0 lacks an end");
     rejects("fig05-angles", "coordination,time_s,joint,angle1_rad,angle2_rad\n0,0,1,4,0\n", "angle 4");
     let parts = "dimension,counting,parts,count,n,mean,low,high\n";
-    rejects("fig07-parts", &format!("{parts}2,best-draw,5,1,1,5,,\n"), "no row of all draws");
+    rejects("fig07-parts", &format!("{parts}2,best-draw,5,1,1,5,,\n"), "no row that counts all draws");
     let many: String = (0..100).map(|d| format!("{d},all-draws,5,1,1,5,,\n")).collect();
     rejects("fig07-parts", &format!("{parts}{many}"), "100 different values of d");
     let curve =
