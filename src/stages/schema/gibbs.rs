@@ -15,7 +15,7 @@ use super::error::InferenceError;
 use super::joints;
 use super::settings::{EdgeWeight, Model, Schema, Start};
 use crate::stages::mixture::{
-    Augmented, Gaussian, NormalInverseWishart, Points, SufficientStatistics, assignments, lloyd,
+    Augmented, Gaussian, NormalInverseWishart, Points, Rounding, SufficientStatistics, assignments, lloyd,
 };
 use crate::stages::tree::{Edge, prim};
 
@@ -147,68 +147,95 @@ impl<'a> Chain<'a> {
         self.log_weights = self.statistics.iter().map(draw).collect();
     }
 
-    /// q, and the minimum spanning tree over the active components (equations 18 and 22).
+    /// Draws q, and sets C to the minimum spanning tree over the active components (equations 18 and 22).
     fn update_tree(&mut self, rng: &mut impl Rng) -> Result<(), InferenceError> {
         let active = self.active();
-        let components = &self.gaussians;
-        let mut informations: Vec<Option<Augmented>> = vec![None; components.len()];
-        active.iter().for_each(|&k| informations[k] = Some(components[k].information()));
-        let information = |k: usize| informations[k].as_ref().expect("joints connect active components");
-        let draw_joint = |edge: Edge, rng: &mut _| {
-            joints::draw_between(information(edge.child), information(edge.parent), rng)
-        };
+        let informations = self.informations(&active);
         self.joints = match self.settings.edge_weight {
-            EdgeWeight::Literal => {
-                // Each component but the root has one joint, drawn given the parent it has; one that has
-                // none (newly active, or the root of the last tree) draws it from its own Gaussian.
-                let mut own: Vec<Option<DVector<f64>>> = vec![None; components.len()];
-                for &s in &active {
-                    let edge = self.joints.iter().map(|joint| joint.edge).find(|edge| edge.child == s);
-                    own[s] = Some(match edge {
-                        Some(edge) => draw_joint(edge, rng)?,
-                        None => components[s].draw(rng),
-                    });
-                }
-                let joint = |s: usize| own[s].as_ref().expect("every active component has a joint");
-                prim(&active, |s, c| joints::cost(joint(s), &components[s], &components[c]))
-                    .into_iter()
-                    .map(|edge| Joint { edge, position: joint(edge.child).clone() })
-                    .collect()
-            }
-            EdgeWeight::Pairwise => {
-                let size = components.len();
-                let mut drawn: Vec<Option<(f64, DVector<f64>)>> = vec![None; size * size];
-                for (at, &s) in active.iter().enumerate() {
-                    for &c in &active[..at] {
-                        let q = draw_joint(Edge { child: s, parent: c }, rng)?;
-                        drawn[c * size + s] = Some((joints::cost(&q, &components[s], &components[c]), q));
-                    }
-                }
-                let pair = |s: usize, c: usize| {
-                    drawn[s.min(c) * size + s.max(c)].as_ref().expect("drawn for every active pair")
-                };
-                prim(&active, |s, c| pair(s, c).0)
-                    .into_iter()
-                    .map(|edge| Joint { edge, position: pair(edge.child, edge.parent).1.clone() })
-                    .collect()
-            }
-            EdgeWeight::Collapsed => {
-                let mut lost = None;
-                let cost = |s: usize, c: usize| {
-                    joints::collapsed_cost(&components[s], &components[c]).unwrap_or_else(|error| {
-                        lost = Some(error);
-                        f64::INFINITY
-                    })
-                };
-                let edges = prim(&active, cost);
-                if let Some(error) = lost {
-                    return Err(error.into());
-                }
-                let joint = |edge| Ok(Joint { edge, position: draw_joint(edge, rng)? });
-                edges.into_iter().map(joint).collect::<Result<_, InferenceError>>()?
-            }
-        };
+            EdgeWeight::Literal => self.literal_tree(&active, &informations, rng),
+            EdgeWeight::Pairwise => self.pairwise_tree(&active, &informations, rng),
+            EdgeWeight::Collapsed => self.collapsed_tree(&active, &informations, rng),
+        }?;
         Ok(())
+    }
+
+    /// The information matrix of each active component, which the draws of its joints need.
+    fn informations(&self, active: &[usize]) -> Informations {
+        let mut informations = vec![None; self.gaussians.len()];
+        active.iter().for_each(|&k| informations[k] = Some(self.gaussians[k].information()));
+        Informations(informations)
+    }
+
+    /// The tree weighed by the joint that each child has ([`EdgeWeight::Literal`]).
+    ///
+    /// Each component but the root has one joint, drawn given the parent it has. A component that has no parent (newly
+    /// active, or the root of the last tree) draws its joint from its own Gaussian.
+    fn literal_tree(
+        &self,
+        active: &[usize],
+        informations: &Informations,
+        rng: &mut impl Rng,
+    ) -> Result<Vec<Joint>, InferenceError> {
+        let components = &self.gaussians;
+        let mut own: Vec<Option<DVector<f64>>> = vec![None; components.len()];
+        for &s in active {
+            let edge = self.joints.iter().map(|joint| joint.edge).find(|edge| edge.child == s);
+            own[s] = Some(match edge {
+                Some(edge) => informations.draw_joint(edge, rng)?,
+                None => components[s].draw(rng),
+            });
+        }
+        let joint = |s: usize| own[s].as_ref().expect("every active component has a joint");
+        let edges = prim(active, |s, c| joints::cost(joint(s), &components[s], &components[c]));
+        Ok(edges.into_iter().map(|edge| Joint { edge, position: joint(edge.child).clone() }).collect())
+    }
+
+    /// The tree weighed by a joint for each pair of components ([`EdgeWeight::Pairwise`]).
+    fn pairwise_tree(
+        &self,
+        active: &[usize],
+        informations: &Informations,
+        rng: &mut impl Rng,
+    ) -> Result<Vec<Joint>, InferenceError> {
+        let components = &self.gaussians;
+        let size = components.len();
+        let mut drawn: Vec<Option<(f64, DVector<f64>)>> = vec![None; size * size];
+        for (at, &s) in active.iter().enumerate() {
+            for &c in &active[..at] {
+                let q = informations.draw_joint(Edge { child: s, parent: c }, rng)?;
+                drawn[c * size + s] = Some((joints::cost(&q, &components[s], &components[c]), q));
+            }
+        }
+        let pair = |s: usize, c: usize| {
+            drawn[s.min(c) * size + s.max(c)].as_ref().expect("drawn for every active pair")
+        };
+        let edges = prim(active, |s, c| pair(s, c).0);
+        let joint = |edge: Edge| Joint { edge, position: pair(edge.child, edge.parent).1.clone() };
+        Ok(edges.into_iter().map(joint).collect())
+    }
+
+    /// The tree weighed with the joints integrated out, and then a joint for each of its edges
+    /// ([`EdgeWeight::Collapsed`]).
+    fn collapsed_tree(
+        &self,
+        active: &[usize],
+        informations: &Informations,
+        rng: &mut impl Rng,
+    ) -> Result<Vec<Joint>, InferenceError> {
+        let components = &self.gaussians;
+        let mut lost = None;
+        let cost = |s: usize, c: usize| {
+            joints::collapsed_cost(&components[s], &components[c]).unwrap_or_else(|error| {
+                lost = Some(error);
+                f64::INFINITY
+            })
+        };
+        let edges = prim(active, cost);
+        if let Some(error) = lost {
+            return Err(error.into());
+        }
+        let joint = |edge| Ok(Joint { edge, position: informations.draw_joint(edge, rng)? });
+        edges.into_iter().map(joint).collect()
     }
 
     /// The active components: those of more than one point (section 3.2).
@@ -245,6 +272,17 @@ impl<'a> Chain<'a> {
             Ok(count + self.prior.log_marginal(data)?)
         };
         Ok(labels + occupied.map(component).sum::<Result<f64, InferenceError>>()?)
+    }
+}
+
+/// The [information](Gaussian::information) of each active component.
+struct Informations(Vec<Option<Augmented>>);
+
+impl Informations {
+    /// Draws a joint on an edge between two active components (equation 18).
+    fn draw_joint(&self, edge: Edge, rng: &mut impl Rng) -> Result<DVector<f64>, Rounding> {
+        let information = |k: usize| self.0[k].as_ref().expect("joints connect active components");
+        joints::draw_between(information(edge.child), information(edge.parent), rng)
     }
 }
 
