@@ -10,21 +10,20 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 
 use indicatif::ProgressBar;
-use serde::{Deserialize, Serialize};
 
+use super::body_files::{BodyFiles, KeptBody};
 use super::error::ExperimentError;
+use crate::files::FileError;
 use crate::files::checkpoint::Checkpoints;
-use crate::files::{FileError, npy, sha256, tables};
 use crate::pipeline::{
-    BaselineRecord, Body, Condition, Facts, FeltBody, Inference, MappedBody, Record, StageError,
-    cluster_and_score, feel, infer_and_score, map_felt,
+    BaselineRecord, Body, Condition, FeltBody, Inference, MappedBody, Record, StageError, cluster_and_score,
+    feel, infer_and_score, map_felt,
 };
 use crate::settings::Settings;
-use crate::stages::body_map::BodyMaps;
 use crate::stages::schema::Draw;
 
 /// Steps of the progress bar that a movement counts for.
-const MOVEMENT: u64 = 100;
+const MOVEMENT_STEPS: u64 = 100;
 
 /// What is inferred from one movement of one body.
 #[derive(Debug, Clone)]
@@ -67,17 +66,6 @@ pub struct Found {
     pub kept: Option<KeptBody>,
 }
 
-/// A body whose files are results.
-#[derive(Debug, Clone)]
-pub struct KeptBody {
-    /// Truth and body maps.
-    pub body: Body,
-    /// How well its sensors could be mapped.
-    pub facts: Facts,
-    /// Its files, within the folder of results.
-    pub files: Vec<String>,
-}
-
 /// What a task found, or why it failed.
 pub type Outcome = Result<Found, String>;
 
@@ -109,14 +97,22 @@ impl From<StageError> for Stop {
     }
 }
 
-/// The pressures of a movement, or why it failed; empty until a task needs them.
-type Felt = Option<Result<FeltBody, String>>;
+/// A movement, which is simulated when the first of its tasks needs it.
+struct Movement {
+    /// The pressures, or why it failed.
+    felt: Option<Result<FeltBody, String>>,
+    /// Whether other tasks may need it, too.
+    shared: bool,
+}
 
-/// Finished body maps: their files are the result, and a checkpoint keeps the hashes.
-#[derive(Serialize, Deserialize)]
-struct MappedFiles {
-    facts: Facts,
-    files: Vec<(String, String)>,
+impl Movement {
+    fn alone() -> Self {
+        Self { felt: None, shared: false }
+    }
+
+    fn shared() -> Self {
+        Self { felt: None, shared: true }
+    }
 }
 
 impl Batch<'_> {
@@ -125,16 +121,29 @@ impl Batch<'_> {
         tasks.iter().map(Task::length).sum()
     }
 
-    /// Runs one task after the other, each on all threads.
+    /// Runs one task after the other, each on all threads. Of all but the first, only the files of the body are kept.
     ///
     /// # Errors
     /// If a task fails, or a file cannot be written.
     pub fn one_by_one(&self, tasks: &[Task]) -> Result<Vec<Found>, ExperimentError> {
-        let run = |task: &Task| {
+        let mut all = Vec::with_capacity(tasks.len());
+        for (at, task) in tasks.iter().enumerate() {
             self.bar.set_message(task.name.clone());
-            self.finish(task, &mut None)?.map_err(ExperimentError::Stage)
-        };
-        tasks.iter().map(run).collect()
+            let progress = TaskProgress { bar: self.bar, done: AtomicU64::new(0) };
+            // Not kept among the checkpoints: what failed may succeed on a machine or with a library that differs.
+            let mut found = match self.try_to_finish(task, &mut Movement::alone(), &progress) {
+                Ok(found) => found,
+                Err(Stop::Failed(reason)) => return Err(ExperimentError::Stage(reason)),
+                Err(Stop::File(error)) => return Err(error.into()),
+            };
+            progress.complete(task);
+            if at > 0 {
+                found.best.clear();
+                found.kept.iter_mut().for_each(|kept| kept.body.maps = None);
+            }
+            all.push(found);
+        }
+        Ok(all)
     }
 
     /// Runs as many tasks at once as there are threads, those that share a movement after each other. Each takes as much
@@ -149,13 +158,14 @@ impl Batch<'_> {
         let next = AtomicUsize::new(0);
         let work = || {
             while let Some(movement) = movements.get(next.fetch_add(1, Ordering::Relaxed)) {
-                let mut felt = None;
+                let mut felt = Movement::shared();
                 for &at in movement {
                     match self.finish(&tasks[at], &mut felt) {
                         Ok(outcome) => *outcomes[at].lock().expect("no worker panics") = Some(outcome),
                         Err(error) => {
                             next.store(movements.len(), Ordering::Relaxed);
                             trouble.lock().expect("no worker panics").get_or_insert(error);
+                            return;
                         }
                     }
                 }
@@ -173,13 +183,13 @@ impl Batch<'_> {
         Ok(outcomes.into_iter().map(|slot| outcome(slot).expect("every task was done")).collect())
     }
 
-    /// Does what is left of a task. `felt` is its movement, once one of the tasks that share it needs it.
-    fn finish(&self, task: &Task, felt: &mut Felt) -> Result<Outcome, FileError> {
+    /// Does what is left of a task, and keeps a failure, so that it is not tried again.
+    fn finish(&self, task: &Task, movement: &mut Movement) -> Result<Outcome, FileError> {
         let progress = TaskProgress { bar: self.bar, done: AtomicU64::new(0) };
         let failed = format!("{}/failed", task.name);
         let outcome = match self.checkpoints.recall(&failed) {
             Some(reason) => Err(reason),
-            None => match self.try_to_finish(task, felt, &progress) {
+            None => match self.try_to_finish(task, movement, &progress) {
                 Ok(found) => Ok(found),
                 Err(Stop::File(error)) => return Err(error),
                 Err(Stop::Failed(reason)) => {
@@ -192,19 +202,28 @@ impl Batch<'_> {
         Ok(outcome)
     }
 
-    fn try_to_finish(&self, task: &Task, felt: &mut Felt, progress: &TaskProgress) -> Result<Found, Stop> {
+    fn try_to_finish(
+        &self,
+        task: &Task,
+        movement: &mut Movement,
+        progress: &TaskProgress,
+    ) -> Result<Found, Stop> {
         let mut found = Found::default();
         let mut body = None;
         if task.keep != Keep::Nothing {
-            let kept = match self.recall_body(task) {
+            let place = BodyFiles { out: self.out, checkpoints: self.checkpoints, name: &task.name };
+            let kept = match place.recall(&task.settings) {
                 Some(kept) => kept,
-                None => self.write_body(task, map(task, felt, progress)?)?,
+                None => {
+                    let mapped = map(task, movement, progress)?;
+                    place.write(mapped, task.keep == Keep::MapsAndDistances)?
+                }
             };
             body = Some(kept.body.clone());
             found.kept = Some(kept);
         }
         for &condition in &task.conditions {
-            let inference = self.infer(task, condition, &mut body, felt, progress)?;
+            let inference = self.infer(task, condition, &mut body, movement, progress)?;
             found.records.extend(inference.records);
             found.best.push(inference.best);
         }
@@ -221,7 +240,7 @@ impl Batch<'_> {
         task: &Task,
         condition: Condition,
         body: &mut Option<Body>,
-        felt: &mut Felt,
+        movement: &mut Movement,
         progress: &TaskProgress,
     ) -> Result<Inference, Stop> {
         let name = format!("{}/{}-{}", task.name, condition.model.name(), condition.dimension);
@@ -231,7 +250,7 @@ impl Batch<'_> {
         }
         let body = match body {
             Some(body) => body,
-            none => none.insert(map(task, felt, progress)?.body),
+            none => none.insert(map(task, movement, progress)?.body),
         };
         let tick = || progress.add(1);
         let found = infer_and_score(body, condition, &task.settings, task.simulation, &tick)?;
@@ -249,72 +268,31 @@ impl Batch<'_> {
         self.checkpoints.keep(&name, &found)?;
         Ok(found)
     }
-
-    /// Writes the files of a body, and a checkpoint with their hashes.
-    fn write_body(&self, task: &Task, mapped: MappedBody) -> Result<KeptBody, FileError> {
-        let MappedBody { body, distances, facts } = mapped;
-        let folder = self.out.join(&task.name);
-        let mut names = vec!["labels.csv".to_owned(), "tree.csv".to_owned()];
-        tables::write_truth(&folder.join(&names[0]), &folder.join(&names[1]), &body.truth)?;
-        if task.keep == Keep::MapsAndDistances {
-            npy::write_distances(&folder.join("distance.npy"), &distances)?;
-            names.push("distance.npy".to_owned());
-        }
-        for (name, map) in body.maps.iter().flat_map(BodyMaps::files) {
-            npy::write_body_map(&folder.join(&name), map)?;
-            names.push(name);
-        }
-        let hashed = |name: String| Ok((name.clone(), sha256(&folder.join(name))?));
-        let files = names.into_iter().map(hashed).collect::<Result<_, FileError>>()?;
-        let finished = MappedFiles { facts, files };
-        self.checkpoints.keep(&format!("{}/body", task.name), &finished)?;
-        Ok(finished.of(task, body))
-    }
-
-    /// A body that an earlier run mapped, if its files are still what they were.
-    fn recall_body(&self, task: &Task) -> Option<KeptBody> {
-        let finished: MappedFiles = self.checkpoints.recall(&format!("{}/body", task.name))?;
-        let folder = self.out.join(&task.name);
-        for (name, hash) in &finished.files {
-            let path = folder.join(name);
-            if sha256(&path).ok().as_ref() != Some(hash) {
-                eprintln!("bodyschema: {}: has changed or is missing; it is made again", path.display());
-                return None;
-            }
-        }
-        let maps = finished.files.iter().filter(|(name, _)| name.starts_with("body-map"));
-        // A map that is there and cannot be read is not one that we wrote.
-        let maps: Option<Vec<_>> =
-            maps.map(|(name, _)| npy::read_body_map(&folder.join(name)).ok()).collect();
-        let maps = BodyMaps::of(task.settings.map.method, maps?);
-        let sensors = task.settings.sensors();
-        let truth = tables::read_truth(&folder.join("labels.csv"), &folder.join("tree.csv"), sensors).ok()?;
-        Some(finished.of(task, Body { truth, maps }))
-    }
-}
-
-impl MappedFiles {
-    fn of(self, task: &Task, body: Body) -> KeptBody {
-        let files = self.files.into_iter().map(|(name, _)| format!("{}/{name}", task.name)).collect();
-        KeptBody { body, facts: self.facts, files }
-    }
 }
 
 /// Stages 1 to 5 of a task; of tasks that share a movement, the first one simulates it.
-fn map(task: &Task, felt: &mut Felt, progress: &TaskProgress) -> Result<MappedBody, Stop> {
+fn map(task: &Task, movement: &mut Movement, progress: &TaskProgress) -> Result<MappedBody, Stop> {
     let Task { settings, simulation, .. } = task;
-    let felt = felt.get_or_insert_with(|| {
+    let felt = movement.felt.get_or_insert_with(|| {
         let samples = settings.physics.samples(settings.sense.interval) + 1;
         let seen = Cell::new(0);
         let tick = || {
             let (before, now) = (seen.get(), seen.get() + 1);
             seen.set(now);
-            progress.add(MOVEMENT * now as u64 / samples as u64 - MOVEMENT * before as u64 / samples as u64);
+            progress.add(
+                MOVEMENT_STEPS * now as u64 / samples as u64
+                    - MOVEMENT_STEPS * before as u64 / samples as u64,
+            );
         };
         feel(settings, *simulation, &tick).map_err(|error| error.to_string())
     });
     let felt = felt.as_ref().map_err(|reason| Stop::Failed(reason.clone()))?;
-    Ok(map_felt(felt, settings, &task.dimensions())?)
+    let mapped = map_felt(felt, settings, &task.dimensions())?;
+    if !movement.shared {
+        // A third of a gigabyte that nobody needs any more.
+        movement.felt = None;
+    }
+    Ok(mapped)
 }
 
 impl Task {
@@ -329,7 +307,7 @@ impl Task {
 
     /// Steps of the progress bar: one for each chain, and some for the movement.
     fn length(&self) -> u64 {
-        MOVEMENT + (self.conditions.len() * self.settings.schema.chains) as u64
+        MOVEMENT_STEPS + (self.conditions.len() * self.settings.schema.chains) as u64
     }
 }
 

@@ -95,7 +95,8 @@ fn task(settings: &Settings, coordination: f64, simulation: usize) -> Task {
     settings.experiment.simulations = 1;
     settings.experiment.dimensions = vec![last.dimension];
     settings.experiment.coordinations = vec![coordination];
-    let key = serde_json::to_string(&(&settings, simulation)).expect("settings are plain data");
+    // All conditions are part of it: with other dimensions, the same maps may differ in their last digits.
+    let key = serde_json::to_string(&(&settings, &conditions, simulation)).expect("settings are plain data");
     let name = sha256_of_text(&key);
     Task { name, settings, simulation, conditions, clustered: Vec::new(), keep: Keep::Nothing }
 }

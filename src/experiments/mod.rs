@@ -1,6 +1,7 @@
 //! Run the paper's experiments, the search for a default, and the study of what the paper leaves open.
 
 mod batch;
+mod body_files;
 mod configurations;
 mod design;
 mod error;

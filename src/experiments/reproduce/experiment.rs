@@ -5,7 +5,8 @@ use std::time::{Instant, SystemTime};
 
 use serde_json::{Value, json};
 
-use super::super::batch::{Batch, Found, Keep, KeptBody, Task};
+use super::super::batch::{Batch, Found, Keep, Task};
+use super::super::body_files::KeptBody;
 use super::super::error::ExperimentError;
 use super::super::progress::progress;
 use super::run::{Run, preamble};
