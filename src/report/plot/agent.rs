@@ -95,10 +95,7 @@ pub fn render(rows: &[AgentRow]) -> Result<String, PlotError> {
     let parts = numbers.iter().map(|&number| Cylinder::of(rows, number)).collect::<Result<Vec<_>, _>>()?;
     let joints: Vec<Vector> = rows.iter().filter(|row| row.kind == AgentPoint::Joint).map(position).collect();
     let first = parts[0].number;
-    let mut legend = Legend::default();
-    legend.add(Key::Marker(sensor(first), 2.4), "sensor");
-    legend.add(Key::Marker(far_sensor(first), 2.4), "sensor on the far side");
-    legend.add(Key::Marker(joint(), 4.5), "joint");
+    let legend = legend(first);
 
     let top = legend.height();
     let widest = WIDTH - 12.0;
@@ -138,6 +135,15 @@ pub fn render(rows: &[AgentRow]) -> Result<String, PlotError> {
         cylinder(canvas, part, centre, near_scale)?;
         scale_bar(canvas, (WIDTH / 2.0, close_up + near_high + 30.0), near_scale, part.length() / 5.0)
     })
+}
+
+/// The legend, with the sensors of part `first` as keys.
+fn legend(first: usize) -> Legend {
+    let mut legend = Legend::default();
+    legend.add(Key::Marker(sensor(first), 2.4), "sensor");
+    legend.add(Key::Marker(far_sensor(first), 2.4), "sensor on the far side");
+    legend.add(Key::Marker(joint(), 4.5), "joint");
+    legend
 }
 
 /// A part in the plane of x and y.

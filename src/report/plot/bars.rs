@@ -32,16 +32,7 @@ pub fn parts(rows: &[PartsRow], mark: Option<&Mark>) -> Result<String, PlotError
         return plot_error("has no row that counts all draws");
     };
 
-    let mut legend = Legend::default();
-    legend.add(Key::Band(BLUE, BAR), "draws");
-    legend.add(Key::Line(INK, 2.0), "mean");
-    legend.add(Key::Band(INK, FAINT), "its 95 % interval");
-    if let Some(mark) = mark {
-        legend.add(Key::Dashes, mark.name.clone());
-    }
-    if of(Counting::BestDraw).next().is_some() {
-        legend.add(Key::Marker(best(), 4.4), "mean of the draws of highest log posterior (extension)");
-    }
+    let legend = parts_legend(of(Counting::BestDraw).next().is_some(), mark);
     let (above, each) = (24.0, 116.0);
     let lines = dimensions.len().div_ceil(COLUMNS);
     let top = legend.height();
@@ -74,17 +65,45 @@ pub fn parts(rows: &[PartsRow], mark: Option<&Mark>) -> Result<String, PlotError
                 let middle = panel.inner.top + panel.inner.height / 2.0;
                 canvas.upwards("parts", (12.0, middle), FONT)?;
             }
-            let mine = |counting| of(counting).filter(|row| row.dimension == *dimension);
-            panel.title(canvas, &title(*dimension, mine(Counting::AllDraws).next()))?;
-            histogram(canvas, &panel, mine(Counting::AllDraws), mark)?;
-            if let Some(row) = mine(Counting::BestDraw).next() {
-                let (x, y) = panel.at(x.range.end, row.mean);
-                // Beside the histogram: it is no count.
-                canvas.marker((x + 8.0, y), 4.4, best())?;
-            }
+            one_dimension(canvas, &panel, x.range.end, rows, *dimension, mark)?;
         }
         Ok(())
     })
+}
+
+/// The histogram of one d, with its title and, at `end` of the axis, the mean of the draws of highest log posterior.
+fn one_dimension(
+    canvas: &Canvas,
+    panel: &Panel,
+    end: f64,
+    rows: &[PartsRow],
+    dimension: usize,
+    mark: Option<&Mark>,
+) -> Rendered {
+    let of = |counting| rows.iter().filter(move |row| row.dimension == dimension && row.counting == counting);
+    panel.title(canvas, &title(dimension, of(Counting::AllDraws).next()))?;
+    histogram(canvas, panel, of(Counting::AllDraws), mark)?;
+    if let Some(row) = of(Counting::BestDraw).next() {
+        let (x, y) = panel.at(end, row.mean);
+        // Beside the histogram, since it is not a count.
+        canvas.marker((x + 8.0, y), 4.4, best())?;
+    }
+    Ok(())
+}
+
+/// The legend of [`parts`]; `extension` says whether the draws of highest log posterior are shown.
+fn parts_legend(extension: bool, mark: Option<&Mark>) -> Legend {
+    let mut legend = Legend::default();
+    legend.add(Key::Band(BLUE, BAR), "draws");
+    legend.add(Key::Line(INK, 2.0), "mean");
+    legend.add(Key::Band(INK, FAINT), "its 95 % interval");
+    if let Some(mark) = mark {
+        legend.add(Key::Dashes, mark.name.clone());
+    }
+    if extension {
+        legend.add(Key::Marker(best(), 4.4), "mean of the draws of highest log posterior (extension)");
+    }
+    legend
 }
 
 fn title(dimension: usize, row: Option<&PartsRow>) -> String {
@@ -117,8 +136,8 @@ fn histogram<'a>(
     Ok(())
 }
 
-/// Figure 9: a box of ARIs for each d.
-pub fn boxes(rows: &[BoxRow]) -> Result<String, PlotError> {
+/// Checks that the boxes can be placed on a picture.
+fn check_boxes(rows: &[BoxRow]) -> Rendered {
     check("d", rows.iter().map(|row| row.dimension as f64), 1.0, 1e6)?;
     if few("d", rows.iter().map(|row| row.dimension))?.len() < rows.len() {
         return plot_error("has two rows of the same d");
@@ -139,6 +158,12 @@ pub fn boxes(rows: &[BoxRow]) -> Result<String, PlotError> {
             return plot_error(format!("has quartiles out of order at d = {}", row.dimension));
         }
     }
+    Ok(())
+}
+
+/// Figure 9: a box of ARIs for each d.
+pub fn boxes(rows: &[BoxRow]) -> Result<String, PlotError> {
+    check_boxes(rows)?;
     let mut legend = Legend::default();
     legend.add(Key::Line(VERMILLION, 2.6), "median");
     legend.add(Key::Band(BLUE, FAINT), "quartiles");

@@ -139,28 +139,7 @@ pub fn render(rows: &[CurveRow], kind: &Kind, mark: Option<&Mark>) -> Result<Str
     let all = series(rows);
     let styles: Vec<MarkerStyle> = all.iter().map(|series| style(series[0], &methods)).collect();
 
-    let mut legend = Legend::default();
-    let extensions = styles.iter().filter(|style| style.hollow).count();
-    for (series, &style) in all.iter().zip(&styles).filter(|(_, style)| !style.hollow) {
-        let tree = if kind.rates && series[0].method == "dpgmm" { " + Prim" } else { "" };
-        legend.add(Key::Curve(style), format!("{}{tree}", name(&series[0].method)));
-    }
-    legend.add(Key::Whisker, "95 % interval");
-    if let Some(&style) = styles.iter().find(|style| style.hollow) {
-        let which = if extensions > 1 { "hollow: " } else { "" };
-        legend.add(Key::Marker(style, RADIUS), format!("{which}draw of highest log posterior (extension)"));
-    }
-    if rows.iter().any(|row| row.cells.lowest.is_some()) {
-        legend.add(Key::Band(INK, FAINT), "lowest to highest simulation");
-    }
-    if rows.iter().any(|row| row.value.is_none()) {
-        let what = if kind.rates { "no eligible draw" } else { "no draw" };
-        legend.add(Key::Marker(missing(), RADIUS), what);
-    }
-    if let Some(mark) = mark {
-        legend.add(Key::Dashes, mark.name.clone());
-    }
-
+    let legend = legend(rows, kind, &all, &styles, mark);
     let top = legend.height() + N_LINE * all.len() as f64 + 4.0;
     let height = top + 250.0 + X_LABELS;
     render_svg(height, |canvas| {
@@ -185,6 +164,38 @@ pub fn render(rows: &[CurveRow], kind: &Kind, mark: Option<&Mark>) -> Result<Str
     })
 }
 
+/// The legend of [`render`].
+fn legend(
+    rows: &[CurveRow],
+    kind: &Kind,
+    all: &[Vec<&CurveRow>],
+    styles: &[MarkerStyle],
+    mark: Option<&Mark>,
+) -> Legend {
+    let mut legend = Legend::default();
+    let extensions = styles.iter().filter(|style| style.hollow).count();
+    for (series, &style) in all.iter().zip(styles).filter(|(_, style)| !style.hollow) {
+        let tree = if kind.rates && series[0].method == "dpgmm" { " + Prim" } else { "" };
+        legend.add(Key::Curve(style), format!("{}{tree}", name(&series[0].method)));
+    }
+    legend.add(Key::Whisker, "95 % interval");
+    if let Some(&style) = styles.iter().find(|style| style.hollow) {
+        let which = if extensions > 1 { "hollow: " } else { "" };
+        legend.add(Key::Marker(style, RADIUS), format!("{which}draw of highest log posterior (extension)"));
+    }
+    if rows.iter().any(|row| row.cells.lowest.is_some()) {
+        legend.add(Key::Band(INK, FAINT), "lowest to highest simulation");
+    }
+    if rows.iter().any(|row| row.value.is_none()) {
+        let what = if kind.rates { "no eligible draw" } else { "no draw" };
+        legend.add(Key::Marker(missing(), RADIUS), what);
+    }
+    if let Some(mark) = mark {
+        legend.add(Key::Dashes, mark.name.clone());
+    }
+    legend
+}
+
 /// Figure 8a: a panel for each method, a series for each number of clusters.
 pub fn baselines(rows: &[CurveRow], mark: Option<&Mark>) -> Result<String, PlotError> {
     let kind = ARI_BY_DIMENSION;
@@ -203,24 +214,7 @@ pub fn baselines(rows: &[CurveRow], mark: Option<&Mark>) -> Result<String, PlotE
     let style =
         |row: &CurveRow| MarkerStyle::of(told.iter().position(|k| Some(*k) == row.clusters).unwrap_or(0));
 
-    let mut legend = Legend::default();
-    for (at, clusters) in told.iter().enumerate() {
-        legend.add(Key::Curve(MarkerStyle::of(at)), format!("K = {clusters}"));
-    }
-    if let Some(mark) = mark {
-        legend.add(Key::Dashes, mark.name.clone());
-    }
-    let counts = distinct(rows.iter().map(|row| row.cells.n));
-    let counts = match counts[..] {
-        [n] => format!("n = {n}"),
-        [least, .., most] => format!("n = {least} to {most}"),
-        [] => String::new(),
-    };
-    legend.add(Key::Whisker, format!("95 % interval, {counts}"));
-
-    if rows.iter().any(|row| row.cells.lowest.is_some()) {
-        legend.add(Key::Band(INK, FAINT), "lowest to highest simulation");
-    }
+    let legend = baselines_legend(rows, &told, mark);
     let (above, each) = (20.0, 186.0);
     let top = legend.height();
     let height = top + methods.len() as f64 * (above + each) + X_LABELS - X_BARE + 4.0;
@@ -249,6 +243,29 @@ pub fn baselines(rows: &[CurveRow], mark: Option<&Mark>) -> Result<String, PlotE
         }
         Ok(())
     })
+}
+
+/// The legend of [`baselines`].
+fn baselines_legend(rows: &[CurveRow], told: &[usize], mark: Option<&Mark>) -> Legend {
+    let mut legend = Legend::default();
+    for (at, clusters) in told.iter().enumerate() {
+        legend.add(Key::Curve(MarkerStyle::of(at)), format!("K = {clusters}"));
+    }
+    if let Some(mark) = mark {
+        legend.add(Key::Dashes, mark.name.clone());
+    }
+    let counts = distinct(rows.iter().map(|row| row.cells.n));
+    let counts = match counts[..] {
+        [n] => format!("n = {n}"),
+        [least, .., most] => format!("n = {least} to {most}"),
+        [] => String::new(),
+    };
+    legend.add(Key::Whisker, format!("95 % interval, {counts}"));
+
+    if rows.iter().any(|row| row.cells.lowest.is_some()) {
+        legend.add(Key::Band(INK, FAINT), "lowest to highest simulation");
+    }
+    legend
 }
 
 fn missing() -> MarkerStyle {

@@ -80,72 +80,102 @@ pub fn render(rows: &[MapRow], grouping: Grouping) -> Result<String, PlotError> 
     })
 }
 
+/// The lower end of each dimension of the box.
+const NEAR: f64 = -0.5;
+/// The upper end.
+const FAR: f64 = 0.5;
+
+/// The values at the ticks of an axis, and where they are along the edge of the box, −½ to ½.
+type Ticks = Vec<(f64, f64)>;
+
 /// The three far sides of the box with their lines, and the labels of its three axes.
 fn frame(canvas: &Canvas, view: &View, cube: &[Range<f64>; 3]) -> Rendered {
-    let near = -0.5;
-    let far = 0.5;
     let ticks = cube.clone().map(|range| {
         let side = range.end - range.start;
         let ticks = Axis::new("", range.clone(), 5).ticks;
         ticks.into_iter().map(|value| (value, (value - range.start) / side - 0.5)).collect::<Vec<_>>()
     });
-    let line = |from, to, style| canvas.line(&[view.place(from), view.place(to)], style);
+    grid(canvas, view, &ticks)?;
+    edges(canvas, view)?;
+    labels(canvas, view, &ticks)
+}
+
+/// The lines at the ticks, on the three far sides.
+fn grid(canvas: &Canvas, view: &View, ticks: &[Ticks; 3]) -> Rendered {
+    let line = |from, to| canvas.line(&[view.place(from), view.place(to)], stroke(PALE, 0.6));
     // From this side the walls where x or y is greatest are at the back; the third far side is the floor.
     for &(_, at) in &ticks[0] {
-        line([at, near, near], [at, far, near], stroke(PALE, 0.6))?;
-        line([at, far, near], [at, far, far], stroke(PALE, 0.6))?;
+        line([at, NEAR, NEAR], [at, FAR, NEAR])?;
+        line([at, FAR, NEAR], [at, FAR, FAR])?;
     }
     for &(_, at) in &ticks[1] {
-        line([near, at, near], [far, at, near], stroke(PALE, 0.6))?;
-        line([far, at, near], [far, at, far], stroke(PALE, 0.6))?;
+        line([NEAR, at, NEAR], [FAR, at, NEAR])?;
+        line([FAR, at, NEAR], [FAR, at, FAR])?;
     }
     for &(_, at) in &ticks[2] {
-        line([near, far, at], [far, far, at], stroke(PALE, 0.6))?;
-        line([far, near, at], [far, far, at], stroke(PALE, 0.6))?;
+        line([NEAR, FAR, at], [FAR, FAR, at])?;
+        line([FAR, NEAR, at], [FAR, FAR, at])?;
     }
+    Ok(())
+}
+
+/// The edges of the three far sides.
+fn edges(canvas: &Canvas, view: &View) -> Rendered {
     let corners = [
-        ([near, near, near], [far, near, near]),
-        ([near, near, near], [near, far, near]),
-        ([near, far, near], [near, far, far]),
-        ([far, near, near], [far, far, near]),
-        ([near, far, near], [far, far, near]),
-        ([far, far, near], [far, far, far]),
-        ([near, far, far], [far, far, far]),
-        ([far, near, far], [far, far, far]),
-        ([far, near, near], [far, near, far]),
+        ([NEAR, NEAR, NEAR], [FAR, NEAR, NEAR]),
+        ([NEAR, NEAR, NEAR], [NEAR, FAR, NEAR]),
+        ([NEAR, FAR, NEAR], [NEAR, FAR, FAR]),
+        ([FAR, NEAR, NEAR], [FAR, FAR, NEAR]),
+        ([NEAR, FAR, NEAR], [FAR, FAR, NEAR]),
+        ([FAR, FAR, NEAR], [FAR, FAR, FAR]),
+        ([NEAR, FAR, FAR], [FAR, FAR, FAR]),
+        ([FAR, NEAR, FAR], [FAR, FAR, FAR]),
+        ([FAR, NEAR, NEAR], [FAR, NEAR, FAR]),
     ];
     for (from, to) in corners {
-        line(from, to, stroke(GREY, 0.7))?;
+        canvas.line(&[view.place(from), view.place(to)], stroke(GREY, 0.7))?;
     }
-    // A text beside the edge from `from` to `to`, on the side away from the middle and clear of what is
-    // within `by` points of the edge.
-    let beside = |from: [f64; 3], to: [f64; 3], share: f64, by: f64, text: &str| {
-        let (a, b) = (view.place(from), view.place(to));
-        let (x, y) = (a.0 + share * (b.0 - a.0), a.1 + share * (b.1 - a.1));
-        let length = (b.0 - a.0).hypot(b.1 - a.1).max(1.0);
-        let (dx, dy) = ((b.1 - a.1) / length, (a.0 - b.0) / length);
-        let outer = (dx * (x - view.centre.0) + dy * (y - view.centre.1)).signum();
-        let extent = dx.abs() * text_width(text, FONT) / 2.0 + dy.abs() * 0.5 * FONT;
-        let by = outer * (by + extent);
-        canvas.text(text, (x + by * dx, y + by * dy), Anchor::Middle, FONT, INK)
-    };
-    let edges = [
-        ([near, near, near], [far, near, near], 24.0),
-        ([near, near, near], [near, far, near], 30.0),
+    Ok(())
+}
+
+/// The labels of the ticks and the names of the axes.
+fn labels(canvas: &Canvas, view: &View, ticks: &[Ticks; 3]) -> Rendered {
+    let axes = [
+        ([NEAR, NEAR, NEAR], [FAR, NEAR, NEAR], 24.0),
+        ([NEAR, NEAR, NEAR], [NEAR, FAR, NEAR], 30.0),
         // Its name stands above it.
-        ([near, far, near], [near, far, far], 0.0),
+        ([NEAR, FAR, NEAR], [NEAR, FAR, FAR], 0.0),
     ];
     for ((from, to, beyond_ticks), (ticks, name)) in
-        edges.into_iter().zip(ticks.iter().zip(["x₁ / bit", "x₂ / bit", ""]))
+        axes.into_iter().zip(ticks.iter().zip(["x₁ / bit", "x₂ / bit", ""]))
     {
         // Labels near a corner that two axes share would meet.
         for (value, at) in ticks.iter().filter(|(_, at)| at.abs() < 0.46) {
-            beside(from, to, at + 0.5, 5.0, &plain(*value))?;
+            beside(canvas, view, (from, to), (at + 0.5, 5.0), &plain(*value))?;
         }
         if !name.is_empty() {
-            beside(from, to, 0.5, beyond_ticks, name)?;
+            beside(canvas, view, (from, to), (0.5, beyond_ticks), name)?;
         }
     }
-    let (x, y) = view.place([near, far, far]);
+    let (x, y) = view.place([NEAR, FAR, FAR]);
     canvas.text("x₃ / bit", (x + 2.0, y - 12.0), Anchor::End, FONT, INK)
+}
+
+/// A text beside an edge, at a share of its length: on the side away from the middle of the box, and clear of what is
+/// within `by` points of the edge.
+fn beside(
+    canvas: &Canvas,
+    view: &View,
+    (from, to): ([f64; 3], [f64; 3]),
+    (share, by): (f64, f64),
+    text: &str,
+) -> Rendered {
+    let (a, b) = (view.place(from), view.place(to));
+    let (x, y) = (a.0 + share * (b.0 - a.0), a.1 + share * (b.1 - a.1));
+    let length = (b.0 - a.0).hypot(b.1 - a.1).max(1.0);
+    let (dx, dy) = ((b.1 - a.1) / length, (a.0 - b.0) / length);
+    let outer = (dx * (x - view.centre.0) + dy * (y - view.centre.1)).signum();
+    let extent = dx.abs() * text_width(text, FONT) / 2.0 + dy.abs() * 0.5 * FONT;
+    let by = outer * (by + extent);
+    canvas.text(text, (x + by * dx, y + by * dy), Anchor::Middle, FONT, INK)
 }
