@@ -13,8 +13,8 @@ pub fn rule(columns: usize) -> String {
     format!("|{}", "---|".repeat(columns))
 }
 
-/// A value with three decimals at most, or that there is none.
+/// A value with three decimals at most; a dash where there is no value.
 pub fn number(value: Option<f64>) -> String {
     // Adding zero turns -0 into 0.
-    value.map_or("none".to_owned(), |value| format!("{}", (value * 1e3).round() / 1e3 + 0.0))
+    value.map_or("–".to_owned(), |value| format!("{}", (value * 1e3).round() / 1e3 + 0.0))
 }

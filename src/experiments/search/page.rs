@@ -92,7 +92,7 @@ impl Design {
 
 /// A candidate's value of a claim.
 fn value(judged: &Judged) -> String {
-    let value = number(judged.reproduced.value);
+    let value = judged.reproduced.value.map_or("none".to_owned(), |value| number(Some(value)));
     if judged.verdict == Verdict::Reproduced { format!("**{value}**") } else { value }
 }
 
