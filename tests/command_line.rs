@@ -326,7 +326,7 @@ fn a_mistake_is_one_line_that_says_what_and_where_and_status_2() {
         ("distance nan.npy --out d.npy", "row 1, column 0: NaN"),
         ("distance nan.npy --symbols --out d.npy", "row 1, column 0: NaN"),
         ("distance line.npy --levels 1 --out d.npy", "`quantise.levels` is 1, but must be 2 to 256"),
-        ("map wide.npy --dims 2 --out m.npy", "square matrix, but it is 2 x 3"),
+        ("map wide.npy --dims 2 --out m.npy", "square matrix, but the shape is 2 x 3"),
         ("map line.npy --dims 4 --out m.npy", "at most 1"),
         ("map line.npy --dims 4 --method smacof --out m.npy", "at most 1"),
         ("map same.npy --dims 1 --method nonmetric --out m.npy", "all at distance 0"),

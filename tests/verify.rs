@@ -76,7 +76,7 @@ fn a_finished_run_is_compared_with_its_manifest() {
     }
     fs::remove_file(&manifest).unwrap();
     let (status, printed) = verify(&run);
-    assert!(status == 2 && printed.contains("only a finished experiment has a manifest"), "{printed}");
+    assert!(status == 2 && printed.contains("a run writes its manifest when it is finished"), "{printed}");
 }
 
 #[test]
@@ -167,7 +167,7 @@ fn other_draws_are_compared_by_their_rates() {
 
     fs::remove_file(reference.join("samples.csv")).unwrap();
     let (status, printed) = compare(draws(80, 60));
-    assert!(status == 2 && printed.contains("holds no .csv and no .npy file"), "{printed}");
+    assert!(status == 2 && printed.contains("has no .csv or .npy file"), "{printed}");
 }
 
 /// The body maps of the full experiments, which are committed with the draws that were made of them. The second
