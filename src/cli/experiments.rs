@@ -11,7 +11,7 @@ use super::output::say;
 use crate::analysis::claims::Verdict;
 use crate::analysis::published::Experiment;
 use crate::experiments::reproduce::{self, Run};
-use crate::experiments::{search, sensitivity};
+use crate::experiments::{design, search, sensitivity};
 use crate::files::prepare_folder;
 use crate::report::claims_table;
 use crate::settings::read_toml;
@@ -95,7 +95,7 @@ impl Search {
     /// Runs the subcommand.
     pub fn run(self) -> Result<ExitCode> {
         self.study.threads.apply()?;
-        let (text, origin) = self.study.design((search::DESIGN, "reproduce/search.toml"))?;
+        let (text, origin) = self.study.design((design::SEARCH, "reproduce/search.toml"))?;
         let (design, out) = (search::Design::parse(&text, &origin)?, &self.study.out);
         prepare_folder(out)?;
         say(search::search(&design, out)?)?;
@@ -122,7 +122,7 @@ impl Sensitivity {
     /// Runs the subcommand.
     pub fn run(self) -> Result<ExitCode> {
         self.study.threads.apply()?;
-        let (text, origin) = self.study.design((sensitivity::DESIGN, "reproduce/sensitivity.toml"))?;
+        let (text, origin) = self.study.design((design::SENSITIVITY, "reproduce/sensitivity.toml"))?;
         let out = &self.study.out;
         let mut design = sensitivity::Design::parse(&text, &origin)?;
         if let Some(name) = &self.only {

@@ -8,7 +8,8 @@ use clap::Args;
 
 use super::output::say;
 use crate::experiments::sensitivity;
-use crate::experiments::verify::{Finding, Outcome, against_manifest, against_reference, has_manifest};
+use crate::experiments::verify::{Finding, Outcome, against_manifest, against_reference};
+use crate::files::manifest::Manifest;
 use crate::report::{page, plot};
 
 /// Renders the pictures of an experiment or study again, each from its table, and writes its page again.
@@ -40,7 +41,7 @@ impl Plot {
             figures.display()
         );
         say(format!("{} pictures in {}", pictures.len(), figures.display()))?;
-        if has_manifest(folder) {
+        if Manifest::is_in(folder) {
             page::write(folder)?;
             say(format!("report in {}", folder.join("report.html").display()))?;
         }
@@ -70,7 +71,7 @@ impl Verify {
     pub fn run(self) -> Result<ExitCode> {
         let folder = &self.folder;
         let mut agree = true;
-        if self.against.is_none() || has_manifest(folder) {
+        if self.against.is_none() || Manifest::is_in(folder) {
             agree &= self.tell(&against_manifest(folder)?, "the hashes in manifest.json")?;
         }
         if let Some(reference) = &self.against {

@@ -11,7 +11,7 @@ use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 
 use indicatif::ProgressBar;
 
-use super::body_files::{BodyFiles, KeptBody};
+use super::body_files::{BodyFiles, Kept};
 use super::error::ExperimentError;
 use crate::files::FileError;
 use crate::files::checkpoint::Checkpoints;
@@ -63,7 +63,9 @@ pub struct Found {
     /// All clusterings, evaluated.
     pub baselines: Vec<BaselineRecord>,
     /// The body, where its files are kept.
-    pub kept: Option<KeptBody>,
+    pub body: Option<Body>,
+    /// What is known of that body.
+    pub kept: Option<Kept>,
 }
 
 /// What a task found, or why it failed.
@@ -138,8 +140,7 @@ impl Batch<'_> {
             };
             progress.complete(task);
             if at > 0 {
-                found.best.clear();
-                found.kept.iter_mut().for_each(|kept| kept.body.maps = None);
+                (found.best, found.body) = (Vec::new(), None);
             }
             all.push(found);
         }
@@ -211,16 +212,15 @@ impl Batch<'_> {
         let mut found = Found::default();
         let mut body = None;
         if task.keep != Keep::Nothing {
-            let place = BodyFiles { out: self.out, checkpoints: self.checkpoints, name: &task.name };
-            let kept = match place.recall(&task.settings) {
-                Some(kept) => kept,
+            let files = BodyFiles { out: self.out, checkpoints: self.checkpoints, name: &task.name };
+            let (mapped, kept) = match files.recall(&task.settings) {
+                Some(recalled) => recalled,
                 None => {
                     let mapped = map(task, movement, progress)?;
-                    place.write(mapped, task.keep == Keep::MapsAndDistances)?
+                    files.write(mapped, task.keep == Keep::MapsAndDistances)?
                 }
             };
-            body = Some(kept.body.clone());
-            found.kept = Some(kept);
+            (body, found.kept) = (Some(mapped), Some(kept));
         }
         for &condition in &task.conditions {
             let inference = self.infer(task, condition, &mut body, movement, progress)?;
@@ -231,6 +231,7 @@ impl Batch<'_> {
             let body = body.as_ref().expect("a body that is clustered is kept");
             found.baselines.extend(self.cluster(task, body, dimension)?);
         }
+        found.body = body.filter(|_| found.kept.is_some());
         Ok(found)
     }
 

@@ -10,11 +10,9 @@ use crate::pipeline::{Body, Facts, MappedBody};
 use crate::settings::Settings;
 use crate::stages::body_map::BodyMaps;
 
-/// A body whose files are results.
+/// What is known of a body whose files are results.
 #[derive(Debug, Clone)]
-pub struct KeptBody {
-    /// Truth and body maps.
-    pub body: Body,
+pub struct Kept {
     /// How well its sensors could be mapped.
     pub facts: Facts,
     /// Its files, within the folder of results.
@@ -43,7 +41,7 @@ impl BodyFiles<'_> {
     ///
     /// # Errors
     /// If one cannot be written.
-    pub fn write(&self, mapped: MappedBody, with_distances: bool) -> Result<KeptBody, FileError> {
+    pub fn write(&self, mapped: MappedBody, with_distances: bool) -> Result<(Body, Kept), FileError> {
         let MappedBody { body, distances, facts } = mapped;
         let folder = self.out.join(self.name);
         let mut names = vec!["labels.csv".to_owned(), "tree.csv".to_owned()];
@@ -60,11 +58,11 @@ impl BodyFiles<'_> {
         let files = names.into_iter().map(hashed).collect::<Result<_, FileError>>()?;
         let finished = MappedFiles { facts, files };
         self.checkpoints.keep(&format!("{}/body", self.name), &finished)?;
-        Ok(self.kept(finished, body))
+        Ok((body, self.kept(finished)))
     }
 
     /// The body that an earlier run with these settings wrote, if its files are still what they were.
-    pub fn recall(&self, settings: &Settings) -> Option<KeptBody> {
+    pub fn recall(&self, settings: &Settings) -> Option<(Body, Kept)> {
         let finished: MappedFiles = self.checkpoints.recall(&format!("{}/body", self.name))?;
         let folder = self.out.join(self.name);
         for (name, hash) in &finished.files {
@@ -81,11 +79,11 @@ impl BodyFiles<'_> {
         let maps = BodyMaps::of(settings.map.method, maps?);
         let (labels, tree) = (folder.join("labels.csv"), folder.join("tree.csv"));
         let truth = tables::read_truth(&labels, &tree, settings.sensors()).ok()?;
-        Some(self.kept(finished, Body { truth, maps }))
+        Some((Body { truth, maps }, self.kept(finished)))
     }
 
-    fn kept(&self, MappedFiles { facts, files }: MappedFiles, body: Body) -> KeptBody {
+    fn kept(&self, MappedFiles { facts, files }: MappedFiles) -> Kept {
         let files = files.into_iter().map(|(name, _)| format!("{}/{name}", self.name)).collect();
-        KeptBody { body, facts, files }
+        Kept { facts, files }
     }
 }

@@ -1,6 +1,13 @@
-//! Lay tables of settings over each other, and write them out in a line, as designs of studies need it.
+//! Hold the designs of the repository's studies, and what all designs need: lay tables of settings over each other, and
+//! write them in a line.
 
 use toml::{Table, Value};
+
+/// `reproduce/search.toml`, the design of the search that the default comes from.
+pub const SEARCH: &str = include_str!("../../reproduce/search.toml");
+
+/// `reproduce/sensitivity.toml`, the design of the study of what the paper leaves open.
+pub const SENSITIVITY: &str = include_str!("../../reproduce/sensitivity.toml");
 
 /// Lays `over` on `base`, section by section.
 pub fn merge(base: &mut Table, over: &Table) {

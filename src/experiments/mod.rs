@@ -3,7 +3,7 @@
 mod batch;
 mod body_files;
 mod configurations;
-mod design;
+pub mod design;
 mod error;
 pub mod progress;
 pub mod reproduce;

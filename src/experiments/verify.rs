@@ -67,11 +67,6 @@ impl Display for Finding {
     }
 }
 
-/// Whether `folder` has a manifest, as finished results do.
-pub fn has_manifest(folder: &Path) -> bool {
-    Manifest::is_in(folder)
-}
-
 /// Compares each file of a finished experiment with the hash that its manifest states.
 ///
 /// # Errors
@@ -106,7 +101,7 @@ pub fn against_manifest(folder: &Path) -> Result<Vec<Finding>, FileError> {
 /// If a folder has no table or matrix, or a file cannot be read as what its name says.
 pub fn against_reference(folder: &Path, reference: &Path) -> Result<Vec<Finding>, FileError> {
     let mut findings = Vec::new();
-    if has_manifest(folder) && has_manifest(reference) {
+    if Manifest::is_in(folder) && Manifest::is_in(reference) {
         let read = |folder| -> Result<[Value; 3], FileError> {
             let Manifest { experiment, seed, settings, .. } = Manifest::read(folder)?;
             Ok([experiment.into(), seed.into(), settings.into()])

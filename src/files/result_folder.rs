@@ -38,7 +38,7 @@ impl ResultFolder {
         rows: impl IntoIterator<Item = T>,
     ) -> Result<(), FileError> {
         write_rows(&self.path.join(name), rows)?;
-        self.names.push(name.to_owned());
+        self.remember_one(name);
         Ok(())
     }
 
@@ -48,8 +48,15 @@ impl ResultFolder {
     /// If it cannot be written.
     pub fn write_text(&mut self, name: &str, text: &str) -> Result<(), FileError> {
         write_text(&self.path.join(name), text)?;
-        self.names.push(name.to_owned());
+        self.remember_one(name);
         Ok(())
+    }
+
+    /// A file that is written again is the same file.
+    fn remember_one(&mut self, name: &str) {
+        if self.names.iter().all(|known| known != name) {
+            self.names.push(name.to_owned());
+        }
     }
 
     /// Remembers files that are there already.

@@ -6,7 +6,6 @@ use std::time::{Instant, SystemTime};
 use serde_json::{Value, json};
 
 use super::super::batch::{Batch, Found, Keep, Task};
-use super::super::body_files::KeptBody;
 use super::super::error::ExperimentError;
 use super::super::progress::progress;
 use super::run::{Run, preamble};
@@ -27,7 +26,7 @@ use crate::report::{page, plot};
 use crate::settings::Settings;
 use crate::stages::agent::Agent;
 use crate::stages::schema::Model;
-use crate::stages::simulate::simulate;
+use crate::stages::simulate::{Trajectory, simulate};
 
 /// Runs an experiment: all its simulations, conditions and figures. Returns the judged claims.
 ///
@@ -142,7 +141,7 @@ fn write_figures(
     match run.experiment {
         Experiment::Exp1 => {
             for (condition, draw) in tasks[0].conditions.iter().zip(&found[0].best) {
-                if let Some(KeptBody { body, .. }) = &found[0].kept
+                if let Some(body) = &found[0].body
                     && let Some(maps) = &body.maps
                     && condition.model == Model::DpgmmLj
                     && (2..=3).contains(&condition.dimension)
@@ -163,7 +162,7 @@ fn write_figures(
 /// What figures 4 and 5 show: the agent, and how it moves at first at each p of experiment 2.
 struct Movements {
     agent: Agent,
-    trajectories: Vec<(f64, crate::stages::simulate::Trajectory)>,
+    trajectories: Vec<(f64, Trajectory)>,
     interval: f64,
 }
 

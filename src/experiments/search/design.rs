@@ -10,9 +10,6 @@ use crate::analysis::published::{Claim, Experiment, claims};
 use crate::numerics::rng::stream;
 use crate::settings::{Settings, SettingsError};
 
-/// `reproduce/search.toml`, the design of the search that the default comes from.
-pub const DESIGN: &str = include_str!("../../../reproduce/search.toml");
-
 /// What is searched, how, and by which score.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -149,10 +146,11 @@ impl Term {
 
 #[cfg(test)]
 mod tests {
+    use super::super::super::design::SEARCH;
     use super::*;
 
     #[test]
     fn the_design_of_the_repository_can_be_run() {
-        Design::parse(DESIGN, "search.toml").unwrap().check().unwrap();
+        Design::parse(SEARCH, "search.toml").unwrap().check().unwrap();
     }
 }

@@ -82,7 +82,6 @@ pub fn search(design: &Design, out: &Path) -> Result<String, ExperimentError> {
         candidates = tried.iter().map(|tried| tried.candidate.clone()).collect();
         rounds.push(tried);
         // After each round, so that a search that is stopped has shown something.
-        folder = ResultFolder::new(out);
         folder.write_rows("scores.csv", &scores)?;
         folder.write_rows("credits.csv", &credits)?;
     }

@@ -9,9 +9,6 @@ use super::super::design::flat;
 use super::super::error::ExperimentError;
 use crate::settings::Settings;
 
-/// `reproduce/sensitivity.toml`, the design of the study of what the paper leaves open.
-pub const DESIGN: &str = include_str!("../../../reproduce/sensitivity.toml");
-
 /// What is varied, and how each configuration is run.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -150,18 +147,19 @@ fn is_plain(name: &str) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use super::super::super::design::SENSITIVITY;
     use super::*;
     use crate::settings::PAPER;
 
     #[test]
     fn the_design_of_the_repository_can_be_run() {
-        let study = Design::parse(DESIGN, "sensitivity.toml").unwrap();
+        let study = Design::parse(SENSITIVITY, "sensitivity.toml").unwrap();
         assert!(study.configurations().unwrap().len() > 60);
     }
 
     #[test]
     fn every_setting_that_is_marked_as_ours_is_in_the_study() {
-        let study = Design::parse(DESIGN, "sensitivity.toml").unwrap();
+        let study = Design::parse(SENSITIVITY, "sensitivity.toml").unwrap();
         let named: Vec<&String> = study.factors.iter().flat_map(|factor| &factor.settings).collect();
         // How much is run, and what only says how a run is judged stable.
         let spared = [

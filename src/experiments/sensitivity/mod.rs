@@ -9,5 +9,5 @@ mod study;
 mod survival;
 mod table;
 
-pub use self::design::{DESIGN, Design};
+pub use self::design::Design;
 pub use self::study::{is_study, redraw, study};

@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use super::super::figure_rows::AngleRow;
-use super::axes::{Axis, Panel, Rect, X_BARE, X_LABELS, around, plain};
+use super::axes::{Axis, Panel, Stack, around, plain};
 use super::canvas::{
     Canvas, INK, MarkerStyle, PALETTE, Place, PlotError, Rendered, SHAPES, WIDTH, render_svg, stroke,
 };
@@ -29,27 +29,19 @@ pub fn render(rows: &[AngleRow]) -> Result<String, PlotError> {
     legend.add(Key::Break, "");
     legend.add(Key::Line(INK, 1.6), "first angle");
     legend.add(Key::Line(INK, 0.6), "second angle (thin)");
-    let (above, each) = (19.0, 96.0);
-    let top = legend.height();
-    let height = top + coordinations.len() as f64 * (above + each) + X_LABELS - X_BARE + 4.0;
+    let (top, count) = (legend.height(), coordinations.len());
+    let stack = Stack { top, title: 19.0, each: 96.0, width: WIDTH - 20.0, count };
     let times = around(rows.iter().map(|row| row.time_s), 0.01);
-    render_svg(height, |canvas| {
+    render_svg(stack.height(), |canvas| {
         legend.render(canvas)?;
         for (at, p) in coordinations.iter().enumerate() {
-            let last = at + 1 == coordinations.len();
-            let outer = Rect {
-                left: 4.0,
-                top: top + at as f64 * (above + each) + above,
-                width: WIDTH - 20.0,
-                height: each + if last { X_LABELS - X_BARE } else { 0.0 },
-            };
-            let x = Axis::new(if last { "time / s" } else { "" }, times.clone(), 6);
+            let x = Axis::new(if stack.is_last(at) { "time / s" } else { "" }, times.clone(), 6);
             let y = Axis {
                 ticks: vec![-PI, 0.0, PI],
                 label: |angle| if angle == 0.0 { "0".into() } else { format!("{}\u{3c0}", sign(angle)) },
                 ..Axis::new("angle / rad", -1.1 * PI..1.1 * PI, 3)
             };
-            let panel = Panel::render(canvas, outer, 46.0, &x, &y)?;
+            let panel = Panel::render(canvas, stack.panel(at), 46.0, &x, &y)?;
             panel.title(canvas, &format!("p = {}", plain(*p)))?;
             for (number, joint) in joints.iter().enumerate() {
                 let mine: Vec<&AngleRow> =

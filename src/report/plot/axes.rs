@@ -89,6 +89,42 @@ pub struct Rect {
     pub height: f64,
 }
 
+/// Panels under each other, each with room for a title above it; only the last one has a name on its horizontal axis.
+pub struct Stack {
+    /// Upper edge of the first panel's title.
+    pub top: f64,
+    /// Height of a title.
+    pub title: f64,
+    /// Height of a panel, without the name of its horizontal axis.
+    pub each: f64,
+    /// Width of a panel.
+    pub width: f64,
+    /// Number of panels.
+    pub count: usize,
+}
+
+impl Stack {
+    /// Height of the picture that ends below the last panel.
+    pub fn height(&self) -> f64 {
+        self.top + self.count as f64 * (self.title + self.each) + X_LABELS - X_BARE + 4.0
+    }
+
+    /// Whether a panel is the last one.
+    pub fn is_last(&self, at: usize) -> bool {
+        at + 1 == self.count
+    }
+
+    /// The rectangle of a panel and its axes.
+    pub fn panel(&self, at: usize) -> Rect {
+        Rect {
+            left: 4.0,
+            top: self.top + at as f64 * (self.title + self.each) + self.title,
+            width: self.width,
+            height: self.each + if self.is_last(at) { X_LABELS - X_BARE } else { 0.0 },
+        }
+    }
+}
+
 /// A range with its ticks, as plotters asks for.
 struct Ticked(Range<f64>, Vec<f64>);
 

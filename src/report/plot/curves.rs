@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use plotters::style::Color;
 
 use super::super::figure_rows::{Counting, CurveRow};
-use super::axes::{Axis, Panel, Rect, X_BARE, X_LABELS, percent, plain, sparse};
+use super::axes::{Axis, Panel, Rect, Stack, X_LABELS, percent, plain, sparse};
 use super::canvas::plot_error;
 use super::canvas::{
     Anchor, Canvas, GREY, INK, MarkerStyle, PlotError, Rendered, SMALL, Shape, WIDTH, render_svg, stroke,
@@ -215,23 +215,15 @@ pub fn baselines(rows: &[CurveRow], mark: Option<&Mark>) -> Result<String, PlotE
         |row: &CurveRow| MarkerStyle::of(told.iter().position(|k| Some(*k) == row.clusters).unwrap_or(0));
 
     let legend = baselines_legend(rows, &told, mark);
-    let (above, each) = (20.0, 186.0);
-    let top = legend.height();
-    let height = top + methods.len() as f64 * (above + each) + X_LABELS - X_BARE + 4.0;
-    render_svg(height, |canvas| {
+    let (top, count) = (legend.height(), methods.len());
+    let stack = Stack { top, title: 20.0, each: 186.0, width: WIDTH - 10.0, count };
+    render_svg(stack.height(), |canvas| {
         legend.render(canvas)?;
         let (x, y) = kind.axes(rows);
         let y = Axis { name: "mean ARI", ..y };
         for (at, method) in methods.iter().enumerate() {
-            let last = at + 1 == methods.len();
-            let outer = Rect {
-                left: 4.0,
-                top: top + at as f64 * (above + each) + above,
-                width: WIDTH - 10.0,
-                height: each + if last { X_LABELS - X_BARE } else { 0.0 },
-            };
-            let x = Axis { name: if last { x.name } else { "" }, ..x.clone() };
-            let panel = Panel::render(canvas, outer, Y_LABELS, &x, &y)?;
+            let x = Axis { name: if stack.is_last(at) { x.name } else { "" }, ..x.clone() };
+            let panel = Panel::render(canvas, stack.panel(at), Y_LABELS, &x, &y)?;
             panel.title(canvas, name(method))?;
             if let Some(mark) = mark {
                 panel.reference(canvas, mark.value)?;
