@@ -86,35 +86,31 @@ def manifest(folder):
 
 def claims(results):
     """README.md: five claims, and how many of all are reproduced."""
-    experiments = {name: read_claims(results / name / "claims.csv") for name in ["exp1", "exp2"]}
-    lines = [
-        "| verdict | claim | paper | reproduced | n | 95 % interval | accepted |",
-        "|---|---|---|---|---|---|---|",
-    ]
+    experiments = {name: read_claims(results / name) for name in ["exp1", "exp2"]}
+    columns = ["verdict", "claim", "published", "reproduced", "95 % interval", "n", "accepted"]
+    lines = [row(columns), f"|{'---|' * len(columns)}"]
     for name, id in CLAIMS:
-        row = experiments[name][id]
-        unit = row["unit"]
-        cells = [
-            f"**{row['verdict']}**",
-            row["statement"],
-            row["wording"] or shown(row["published"], unit),
-            shown(row["value"], unit),
-            row["n"],
-            span(row["low"], row["high"], unit),
-            span(row["accepted_low"], row["accepted_high"], unit),
-        ]
-        lines.append(f"| {' | '.join(cells)} |")
+        claim = experiments[name][id]
+        lines.append(row([f"**{claim['verdict']}**"] + [claim[column] for column in columns[1:]]))
     # A claim of both experiments counts once.
-    verdicts = [row["verdict"] for row in (experiments["exp1"] | experiments["exp2"]).values()]
+    verdicts = [claim["verdict"] for claim in (experiments["exp1"] | experiments["exp2"]).values()]
     counts = ", ".join(f"{verdicts.count(verdict)} {verdict}" for verdict in VERDICTS)
     lines += ["", f"All {len(verdicts)} claims: {counts}. {source(results)}"]
     between_marks(ROOT / "README.md", "claims", "\n".join(lines))
 
 
-def read_claims(path):
-    """The rows of a table of claims by id, without those of the extension."""
-    with open(path, newline="") as file:
-        return {row["id"]: row for row in csv.DictReader(file) if row["counting"] == "all-draws"}
+def row(cells):
+    return f"| {' | '.join(cells)} |"
+
+
+def read_claims(folder):
+    """The cells of claims.md by the claim's id, without the rows of the extension."""
+    table = [line.strip("| ").split(" | ") for line in (folder / "claims.md").read_text().splitlines() if "|" in line[:1]]
+    header, rows = table[0], table[2:]
+    by_statement = {cells["claim"]: cells for cells in (dict(zip(header, row)) for row in rows)}
+    with open(folder / "claims.csv", newline="") as file:
+        all_draws = [claim for claim in csv.DictReader(file) if claim["counting"] == "all-draws"]
+    return {claim["id"]: by_statement[claim["statement"]] for claim in all_draws}
 
 
 def source(results):
@@ -129,33 +125,6 @@ def source(results):
         )
         runs.setdefault(size, []).append(f"`reproduce/{name}.sh`")
     return " ".join(f"Made by {' and '.join(commands)}: {size}." for size, commands in runs.items())
-
-
-def shown(value, unit):
-    """A number for people, written as in claims.md; rates in percent."""
-    if value == "":
-        return "–"
-    number = float(value)
-    if unit == "p-value" and number < 0.001:
-        return "< 0.001"
-    return f"{percent(number)} %" if unit == "rate" else plain(number)
-
-
-def span(low, high, unit):
-    """A range for people, written as in claims.md."""
-    if low == "" or high == "":
-        return "–"
-    write = percent if unit == "rate" else plain
-    ends = [write(float(low)), write(float(high))]
-    return " to ".join(ends[: 1 if float(low) == float(high) else 2]) + (" %" if unit == "rate" else "")
-
-
-def percent(rate):
-    return f"{100 * rate:.0f}" if rate in (0, 1) else f"{100 * rate:.1f}"
-
-
-def plain(number):
-    return f"{round(number, 3) + 0:g}"
 
 
 def experiment_1(results):

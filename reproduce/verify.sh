@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Draws the body schema from the reference body maps of both experiments, and compares with the draws that stand
 # beside them: whether the inference does on this machine what it did where they were made. Takes half a minute
-# after the build. Status: 0 it does, 1 it does not, 2 trouble.
+# after the build. Status: 0 it does, 1 it does not, 2 on an error.
 set -euo pipefail
 root=$(CDPATH= cd -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")/.." && pwd)
 manifest=(--release --locked --manifest-path "$root/Cargo.toml")
