@@ -46,7 +46,7 @@ fn wandering(parts: usize) -> Trajectory {
             poses.push(Pose { position: *position, rotation });
         }
     }
-    Trajectory { parts, joints: parts - 1, poses, angles: vec![] }
+    Trajectory { parts, joints: parts - 1, poses, ..Trajectory::default() }
 }
 
 /// What `work` makes, and a line with its least time.

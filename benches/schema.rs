@@ -11,7 +11,7 @@ use bodyschema::settings::Settings;
 use bodyschema::stages::mixture::Points;
 use bodyschema::stages::schema::Chain;
 use bodyschema::stages::schema::Model;
-use bodyschema::stages::schema::fraley_raftery;
+use bodyschema::stages::schema::prior;
 
 /// Sweeps before the clock starts.
 const BURN_IN: usize = 200;
@@ -24,7 +24,7 @@ fn main() {
     let settings = Settings::paper().schema;
     let body = synthetic::body(14, 1.0, &mut stream(1, 1, "synthetic", 0));
     let points = Points::new(&body.map);
-    let prior = fraley_raftery(&points, &settings).expect("the body spans its space");
+    let prior = prior(&points, &settings).expect("the body spans its space");
     for model in Model::ALL {
         let mut rng = stream(1, 1, "bench", 0);
         let mut chain = Chain::start(&points, &prior, &settings, model, &mut rng).unwrap();

@@ -4,17 +4,17 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::numerics::partition::adjusted_rand_index;
-use crate::numerics::rng::stream;
+use crate::numerics::rng::{Stream, stream};
 use crate::settings::Settings;
 use crate::stages::agent::Agent;
 use crate::stages::baselines::{Clustering, cluster};
-use crate::stages::body_map::{BodyMaps, ClassicalScaling, Improvement, MapError};
+use crate::stages::body_map::{BodyMaps, ClassicalScaling, Improvement, MapError, MapOf, between_rows};
 use crate::stages::distance::{Distances, information_metric};
 use crate::stages::evaluate::{parts, score};
-use crate::stages::quantise::quantise;
+use crate::stages::quantise::{Quantise, quantise};
 use crate::stages::schema::{Draw, InferenceError, Model, best, infer, one_part};
 use crate::stages::sense::{Tactile, sense};
-use crate::stages::simulate::{Unstable, simulate};
+use crate::stages::simulate::{Resolution, Trajectory, Unstable, simulate};
 use crate::stages::tree::Truth;
 
 /// What the inference and its evaluation need of one simulation.
@@ -42,6 +42,8 @@ pub struct MappedBody {
 pub struct Facts {
     /// Sensors that showed one symbol throughout.
     pub constant_sensors: usize,
+    /// How well the physics step resolved the movement.
+    pub resolution: Resolution,
     /// Eigenvalues of the dimensions of the largest classical map, descending, bits².
     pub eigenvalues: Vec<f64>,
     /// How well that map agrees with the distances; see [`ClassicalScaling::agreement`].
@@ -130,6 +132,8 @@ pub enum StageError {
 pub struct FeltBody {
     /// The pressures on its sensors.
     pub tactile: Tactile,
+    /// How well the physics step resolved the movement.
+    pub resolution: Resolution,
     /// The true parts and tree, which the inference must not see.
     pub truth: Truth,
 }
@@ -139,12 +143,24 @@ pub struct FeltBody {
 /// # Errors
 /// If the simulation is unstable.
 pub fn feel(settings: &Settings, simulation: usize, tick: &dyn Fn()) -> Result<FeltBody, StageError> {
-    let Settings { agent, skin, motion, physics, sense: tactile_sense, experiment, .. } = settings;
-    let agent = Agent::new(agent, skin);
+    Ok(feel_movement(&wander(settings, simulation, tick)?, settings))
+}
+
+/// Stage 1: moves the body, whose sensors do not matter. Calls `tick` once for each sample.
+///
+/// # Errors
+/// If the simulation is unstable.
+pub fn wander(settings: &Settings, simulation: usize, tick: &dyn Fn()) -> Result<Trajectory, StageError> {
+    let Settings { agent, skin, motion, physics, sense, experiment, .. } = settings;
     let mut rng = stream(experiment.seed, simulation, "motion", 0);
-    let trajectory = simulate(&agent, motion, physics, tactile_sense.interval, &mut rng, tick)?;
-    let tactile = sense(&agent, &trajectory, tactile_sense);
-    Ok(FeltBody { tactile, truth: agent.truth() })
+    Ok(simulate(&Agent::new(agent, skin), motion, physics, sense.interval, &mut rng, tick)?)
+}
+
+/// Stage 2: computes the pressures on the sensors of a body that moved.
+pub fn feel_movement(trajectory: &Trajectory, settings: &Settings) -> FeltBody {
+    let agent = Agent::new(&settings.agent, &settings.skin);
+    let tactile = sense(&agent, trajectory, &settings.sense);
+    FeltBody { tactile, resolution: trajectory.resolution, truth: agent.truth() }
 }
 
 /// Stages 3 to 5: maps the sensors in each number of dimensions in `dims`.
@@ -154,24 +170,70 @@ pub fn feel(settings: &Settings, simulation: usize, tick: &dyn Fn()) -> Result<F
 ///
 /// # Panics
 /// If `dims` is empty.
-pub fn map_felt(felt: &FeltBody, settings: &Settings, dims: &[usize]) -> Result<MappedBody, StageError> {
-    let symbols = quantise(&felt.tactile, &settings.quantise);
-    let distances = information_metric(&symbols);
+pub fn map_felt(
+    felt: &FeltBody,
+    settings: &Settings,
+    simulation: usize,
+    dims: &[usize],
+) -> Result<MappedBody, StageError> {
+    let quantised = quantise_felt(felt, &settings.quantise);
+    map_distances(felt, &quantised, settings, simulation, dims)
+}
+
+/// The information metric between all sensors of a body, and how many of them showed one symbol throughout.
+#[derive(Debug, Clone)]
+pub struct Metric {
+    /// The distances.
+    pub distances: Distances,
+    /// Sensors that showed one symbol throughout.
+    pub constant_sensors: usize,
+}
+
+/// Stages 3 and 4: quantises the pressures, and computes the distances between all sensors.
+pub fn quantise_felt(felt: &FeltBody, settings: &Quantise) -> Metric {
+    let symbols = quantise(&felt.tactile, settings);
+    Metric { distances: information_metric(&symbols), constant_sensors: symbols.constant_sensors().len() }
+}
+
+/// Stage 5: maps the sensors in each number of dimensions in `dims`.
+///
+/// # Errors
+/// As [`map_felt`].
+///
+/// # Panics
+/// If `dims` is empty.
+pub fn map_distances(
+    felt: &FeltBody,
+    metric: &Metric,
+    settings: &Settings,
+    simulation: usize,
+    dims: &[usize],
+) -> Result<MappedBody, StageError> {
+    let Metric { distances, constant_sensors } = metric.clone();
     let largest = dims.iter().copied().max().expect("dims must not be empty");
-    let scaling = ClassicalScaling::new(&distances, largest)?;
+    let rows = (settings.map.of == MapOf::Rows).then(|| between_rows(&distances));
+    let scaled = rows.as_ref().unwrap_or(&distances);
+    let scaling = ClassicalScaling::new(scaled, largest)?;
     let (maps, improvements) = if scaling.positive() == 0 {
         (None, Vec::new())
     } else {
-        let (maps, improvements) = BodyMaps::new(&distances, &scaling, settings.map.method, dims)?;
+        let random = |d: usize, start: usize| map_stream(settings.experiment.seed, simulation, d, start);
+        let (maps, improvements) = BodyMaps::new(scaled, &scaling, &settings.map, dims, &random)?;
         (Some(maps), improvements)
     };
     let facts = Facts {
-        constant_sensors: symbols.constant_sensors().len(),
+        constant_sensors,
+        resolution: felt.resolution,
         map_agreement: scaling.agreement(largest),
         eigenvalues: scaling.eigenvalues,
         improvements,
     };
     Ok(MappedBody { body: Body { truth: felt.truth.clone(), maps }, distances, facts })
+}
+
+/// The stream of a random start of a body map of d dimensions.
+pub fn map_stream(seed: u64, simulation: usize, dims: usize, start: usize) -> Stream {
+    stream(seed, simulation, &format!("map {dims}"), start)
 }
 
 /// The result of the inference on one body map.

@@ -12,7 +12,7 @@ use bodyschema::pipeline::StageError;
 use bodyschema::settings::{PAPER, Settings, SettingsError};
 use bodyschema::stages::body_map::BodyMap;
 use bodyschema::stages::schema::InferenceError;
-use bodyschema::stages::schema::{EdgeWeight, Start};
+use bodyschema::stages::schema::{EdgeWeight, Prior, Sampler, Start};
 use bodyschema::stages::schema::{Model, infer};
 use rand::RngExt;
 use rand::seq::IndexedRandom;
@@ -27,15 +27,17 @@ enum Range {
     /// A whole number; from 0 or 1 on.
     Whole(u64, u64),
     Word(&'static [&'static str]),
+    /// true or false.
+    Flag,
     /// A rising list of whole numbers up to a largest one.
     Numbers(u64),
     /// A rising list of probabilities.
     Probabilities,
 }
 
-use Range::{Numbers, Probabilities, Real, Whole, Word};
+use Range::{Flag, Numbers, Probabilities, Real, Whole, Word};
 
-const SETTINGS: [(&str, Range); 41] = [
+const SETTINGS: [(&str, Range); 58] = [
     ("agent.morphology", Word(&["chain", "star", "tee", "y"])),
     ("agent.part_length", Real(1e-3, 1e3)),
     ("agent.part_radius", Real(1e-3, 3.0)),
@@ -47,6 +49,9 @@ const SETTINGS: [(&str, Range); 41] = [
     ("motion.coordination", Real(0.0, 1.0)),
     ("motion.epoch", Whole(1, i64::MAX as u64)),
     ("motion.targets", Word(&["each", "shared"])),
+    ("motion.controller", Word(&["torque", "servo"])),
+    ("motion.servo_gain", Real(1e-6, 1e6)),
+    ("motion.servo_torque", Real(1e-6, 1e6)),
     ("motion.stiffness", Real(0.0, 1e6)),
     ("motion.damping", Real(0.0, 1e6)),
     ("motion.error", Word(&["raw", "shortest"])),
@@ -57,18 +62,32 @@ const SETTINGS: [(&str, Range); 41] = [
     ("sense.fluid_density", Real(1e-6, 1e6)),
     ("quantise.scheme", Word(&["per-sensor", "pooled", "equal-width"])),
     ("quantise.levels", Whole(2, 256)),
-    ("map.method", Word(&["classical", "smacof", "nonmetric"])),
+    ("map.of", Word(&["distances", "rows"])),
+    ("map.method", Word(&["classical", "smacof", "smacof-random", "nonmetric"])),
+    ("map.starts", Whole(1, 1000)),
+    ("map.steps", Whole(1, i64::MAX as u64)),
+    ("map.tolerance", Real(0.0, 1e6)),
+    ("schema.sampler", Word(&["equations", "authors-code"])),
     ("schema.components", Whole(1, 1000)),
     ("schema.concentration", Real(1e-6, 1e6)),
     ("schema.mean_weight", Real(1e-6, 1e6)),
     ("schema.extra_freedom", Real(-0.99, 1e6)),
+    ("schema.prior", Word(&["fraley-raftery", "identity", "inverse-covariance"])),
     ("schema.scale", Real(1e-6, 1e6)),
     ("schema.edge_weight", Word(&["literal", "pairwise", "collapsed"])),
-    ("schema.start", Word(&["uniform", "k-means", "single"])),
+    ("schema.start", Word(&["uniform", "k-means", "single", "stick-breaking"])),
     ("schema.sweeps", Whole(1, 10_000_000)),
     ("schema.chains", Whole(1, 71_428)),
     ("schema.keep", Word(&["last", "all"])),
     ("schema.burn_in", Whole(0, i64::MAX as u64)),
+    ("schema.authors.density_floor", Real(0.0, 1.0)),
+    ("schema.authors.smallest_part", Whole(1, i64::MAX as u64)),
+    ("schema.authors.root", Word(&["component-0", "first-active"])),
+    ("schema.authors.stale_joints", Flag),
+    ("schema.authors.densities", Word(&["plain", "logarithmic"])),
+    ("schema.authors.joints_in_scatter", Flag),
+    ("schema.authors.mean_covariance", Word(&["inverse-scale", "component"])),
+    ("schema.authors.empty_components", Word(&["inverse", "prior"])),
     ("evaluate.eligible_ari", Real(0.0, 1.0)),
     ("baselines.clusters", Numbers(840)),
     ("baselines.restarts", Whole(1, 1000)),
@@ -102,6 +121,7 @@ impl Range {
             Real(low, high) => format!("{:?}", between(*low, *high, rng)),
             Whole(low, high) => (between(*low as f64, *high as f64, rng) as u64).min(*high).to_string(),
             Word(words) => format!("{:?}", words.choose(rng).unwrap()),
+            Flag => rng.random_bool(0.5).to_string(),
             Numbers(most) => format!("{:?}", rising(*most, rng)),
             Probabilities => {
                 let shares = rising(1_000_000, rng).into_iter().map(|share| share as f64 / 1e6);
@@ -114,7 +134,11 @@ impl Range {
     fn outside(&self) -> Vec<String> {
         let mut values: Vec<String> =
             ["true", "{ }", "1979-05-27", "[[]]", "nan", "-nan", "inf", "-inf"].map(str::to_owned).into();
+        if matches!(self, Flag) {
+            values.retain(|value| value != "true");
+        }
         match self {
+            Flag => values.extend(["0", "1", "\"true\"", "[true]"].map(str::to_owned)),
             Real(low, high) => {
                 let beyond = [
                     low - 1e-5 * low.abs().max(1e-9),
@@ -191,9 +215,10 @@ fn load(file: &Path, text: &str) -> Result<Settings, SettingsError> {
 #[test]
 fn every_setting_of_the_paper_is_tried() {
     let paper: toml::Table = PAPER.parse().unwrap();
-    let keys = |(section, settings): (&String, &toml::Value)| -> Vec<String> {
-        settings.as_table().unwrap().keys().map(|key| format!("{section}.{key}")).collect()
-    };
+    fn keys((name, value): (&String, &toml::Value)) -> Vec<String> {
+        let Some(section) = value.as_table() else { return vec![name.clone()] };
+        section.iter().flat_map(keys).map(|key| format!("{name}.{key}")).collect()
+    }
     let expected: BTreeSet<String> = paper.iter().flat_map(keys).collect();
     assert_eq!(SETTINGS.iter().map(|(key, _)| (*key).to_owned()).collect::<BTreeSet<_>>(), expected);
 }
@@ -224,7 +249,11 @@ fn mixtures_of_extreme_priors_on_nearly_flat_maps_end_in_samples_or_in_an_error(
         (schema.chains, schema.sweeps, schema.components) = (1, 10, *[2, 10, 300].choose(rng).unwrap());
         schema.edge_weight =
             *[EdgeWeight::Literal, EdgeWeight::Pairwise, EdgeWeight::Collapsed].choose(rng).unwrap();
-        schema.start = *[Start::Uniform, Start::KMeans, Start::Single].choose(rng).unwrap();
+        schema.start =
+            *[Start::Uniform, Start::KMeans, Start::Single, Start::StickBreaking].choose(rng).unwrap();
+        schema.sampler = *[Sampler::Equations, Sampler::AuthorsCode].choose(rng).unwrap();
+        schema.prior =
+            *[Prior::FraleyRaftery, Prior::Identity, Prior::InverseCovariance].choose(rng).unwrap();
         schema.concentration = between(1e-6, 1e6, rng);
         schema.mean_weight = between(1e-6, 1e6, rng);
         schema.extra_freedom = between(1e-2, 1e6, rng) - 1.0;

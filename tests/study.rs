@@ -44,7 +44,10 @@ fn search_design() -> String {
     };
     format!(
         "seed = 1
-candidates = 2
+[draws]
+movements = 1
+distances = 2
+inferences = 1
 [[score]]
 claim = \"number-of-parts\"
 experiment = \"exp1\"
@@ -64,6 +67,7 @@ name = \"unstable\"
 settings = {{ motion = {{ stiffness = 1e5, damping = 1e5 }} }}
 [[factor]]
 name = \"edges\"
+decides = \"inference\"
 options = [{{ schema = {{ edge_weight = \"collapsed\" }} }}]
 ",
         round(4, 1),
@@ -168,7 +172,7 @@ fn a_search_keeps_the_best_and_shows_which_claims_hold_together() {
     let one = files(&at("one"));
     assert_eq!(
         one.keys().map(String::as_str).collect::<Vec<_>>(),
-        ["best.toml", "credits.csv", "manifest.json", "scores.csv", "search.md"]
+        ["best.toml", "credits.csv", "manifest.json", "next.toml", "scores.csv", "search.md"]
     );
     let scores = String::from_utf8(one["scores.csv"].clone()).unwrap();
     let row = |start: &str| scores.lines().find(|line| line.starts_with(start)).unwrap().to_owned();
@@ -184,6 +188,13 @@ fn a_search_keeps_the_best_and_shows_which_claims_hold_together() {
     succeed(folder.path(), "verify one");
     succeed(folder.path(), "search --design design.toml --jobs 2 --out two");
     assert_eq!(files(&at("two")), one);
+    // Its second part alone, as another machine would run it, with the candidates that the first part left.
+    succeed(folder.path(), "search --design design.toml --from one/next.toml --out three");
+    let second = |files: &BTreeMap<String, Vec<u8>>| {
+        let scores = String::from_utf8(files["scores.csv"].clone()).unwrap();
+        scores.lines().filter(|line| line.starts_with("2,")).map(str::to_owned).collect::<Vec<_>>()
+    };
+    assert_eq!(second(&files(&at("three"))), second(&one));
     let best = fs::read_to_string(at("one/best.toml")).unwrap();
     assert!(best.contains("levels = 3") || best.contains("edge_weight"), "{best}");
     fs::write(at("short.toml"), format!("{best}\n[physics]\nduration = 10.0\n")).unwrap();

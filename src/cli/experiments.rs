@@ -83,10 +83,14 @@ impl Reproduce {
 /// Searches for settings under which the paper's claims hold together, by a score that is written down beforehand.
 ///
 /// Reads a design (reproduce/search.toml explains one) and writes into DIR: search.md (rounds, and which claims
-/// hold together), scores.csv (a row for each candidate and round), credits.csv (a row for each of its claims), best.toml
-/// (the settings of the best candidate, for --settings) and checkpoints/, from which a search that was stopped continues.
+/// hold together), scores.csv (a row for each candidate and round), credits.csv (a row for each claim of the best
+/// candidates), best.toml (the settings of the best candidate, for --settings), next.toml (the candidates of the next
+/// round, for --from on another machine) and checkpoints/, from which a search that was stopped continues.
 #[derive(Args)]
 pub struct Search {
+    /// Continue with the round and the candidates of this file, the next.toml of an earlier part of the search
+    #[arg(long, value_name = "FILE")]
+    from: Option<PathBuf>,
     #[command(flatten)]
     study: Study,
 }
@@ -97,8 +101,16 @@ impl Search {
         self.study.threads.apply()?;
         let (text, origin) = self.study.design((design::SEARCH, "reproduce/search.toml"))?;
         let (design, out) = (search::Design::parse(&text, &origin)?, &self.study.out);
+        let from = self.from.as_ref().map(|path| {
+            Ok::<_, anyhow::Error>(search::Continuation::parse(
+                &read_toml(path)?,
+                &path.display().to_string(),
+                &design,
+            )?)
+        });
+        let from = from.transpose()?;
         prepare_folder(out)?;
-        say(search::search(&design, out)?)?;
+        say(search::search(&design, from, out)?)?;
         say(format!("All files are in {}.", out.display()))?;
         Ok(ExitCode::SUCCESS)
     }

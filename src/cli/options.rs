@@ -10,9 +10,9 @@ use serde::de::DeserializeOwned;
 
 use crate::analysis::published::Experiment;
 use crate::settings::Settings;
-use crate::stages::body_map::MapMethod;
+use crate::stages::body_map::{MapMethod, MapOf};
 use crate::stages::quantise::Scheme;
-use crate::stages::schema::{EdgeWeight, Keep, Model, Start};
+use crate::stages::schema::{EdgeWeight, Keep, Model, Sampler, Start};
 
 /// The number of threads.
 #[derive(Args)]
@@ -116,7 +116,25 @@ impl Choice for MapMethod {
     const VALUES: &'static [(Self, &'static str)] = &[
         (Self::Classical, "Classical scaling (Torgerson): the largest eigenvalues of the inner products"),
         (Self::Smacof, "Metric scaling by majorisation (SMACOF), starting from the classical map"),
+        (
+            Self::SmacofRandom,
+            "Metric scaling by majorisation (SMACOF), the best of several random starts, as in scikit-learn 0.19",
+        ),
         (Self::Nonmetric, "Nonmetric scaling (Kruskal): only the order of the distances counts"),
+    ];
+}
+
+impl Choice for MapOf {
+    const VALUES: &'static [(Self, &'static str)] = &[
+        (Self::Distances, "The distances themselves"),
+        (Self::Rows, "Euclidean distances between the rows of their matrix"),
+    ];
+}
+
+impl Choice for Sampler {
+    const VALUES: &'static [(Self, &'static str)] = &[
+        (Self::Equations, "As the paper's equations say"),
+        (Self::AuthorsCode, "As the first author's public code computes; see [schema.authors] of paper.toml"),
     ];
 }
 
@@ -143,6 +161,10 @@ impl Choice for Start {
         (Self::Uniform, "Each sensor in a component drawn uniformly"),
         (Self::KMeans, "Components are the clusters of k-means from one random start"),
         (Self::Single, "All sensors in one component"),
+        (
+            Self::StickBreaking,
+            "Weights by stick-breaking, labels from them alone, means by k-means, identity covariances",
+        ),
     ];
 }
 
@@ -191,6 +213,8 @@ mod tests {
     fn every_value_of_a_setting_can_be_chosen() {
         check::<Scheme>();
         check::<MapMethod>();
+        check::<MapOf>();
+        check::<Sampler>();
         check::<Model>();
         check::<EdgeWeight>();
         check::<Start>();

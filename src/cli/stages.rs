@@ -12,15 +12,18 @@ use crate::analysis::statistics::{Estimate, mean, rate};
 use crate::experiments::progress::progress;
 use crate::files::{npy, prepare_folder, tables};
 use crate::numerics::rng::stream;
+use crate::pipeline::map_stream;
 use crate::settings::Settings;
 use crate::stages::agent::Agent;
-use crate::stages::body_map::{BodyMap, BodyMaps, ClassicalScaling, Improvement, MapMethod};
+use crate::stages::body_map::{
+    BodyMap, BodyMaps, ClassicalScaling, Improvement, MapMethod, MapOf, between_rows,
+};
 use crate::stages::distance::information_metric;
 use crate::stages::evaluate::{Score, parts, score};
 use crate::stages::quantise::{Scheme, quantise};
-use crate::stages::schema::{Draw, EdgeWeight, Keep, Model, Start, best, infer};
+use crate::stages::schema::{Draw, EdgeWeight, Keep, Model, Sampler, Start, best, infer};
 use crate::stages::sense::sense;
-use crate::stages::simulate::simulate;
+use crate::stages::simulate::{Resolution, simulate};
 
 /// Stages 1 and 2: moves a body at random in a fluid and records the pressure on its sensors.
 ///
@@ -60,8 +63,22 @@ impl Simulate {
             experiment.seed,
             out.display()
         ))?;
+        say(resolution(trajectory.resolution))?;
         Ok(ExitCode::SUCCESS)
     }
+}
+
+/// Whether the physics step resolved a movement, in words.
+fn resolution(resolution: Resolution) -> String {
+    let Resolution { anchor_separation, turn } = resolution;
+    format!(
+        "the step {} this movement: anchors come apart by at most {:.2} mm, a part turns by at most {turn:.3} of a turn \
+         in a step (limits: {:.0} mm and {})",
+        if resolution.is_resolved() { "resolves" } else { "does not resolve" },
+        1e3 * anchor_separation,
+        1e3 * Resolution::SEPARATION,
+        Resolution::TURN
+    )
 }
 
 /// Stages 3 and 4: turns pressures into symbols, and these into the information metric.
@@ -126,8 +143,8 @@ impl Distance {
 /// Stage 5: places the sensors in D dimensions by multidimensional scaling.
 ///
 /// Reads distances (M x M) and writes coordinates (float64, M x D, in the unit of the distances; columns of a classical
-/// map by descending eigenvalue). For smacof and nonmetric, which start from the classical map, it prints Kruskal's
-/// stress-1.
+/// map by descending eigenvalue). For smacof and nonmetric, which start from the classical map, and for smacof-random,
+/// which starts from random ones, it prints Kruskal's stress-1.
 #[derive(Args)]
 pub struct Map {
     /// Distances: a .npy file, M x M, symmetric
@@ -138,8 +155,12 @@ pub struct Map {
     #[arg(long, value_parser = choice::<MapMethod>(),
           help = with_default("Variant of multidimensional scaling", paper().map.method))]
     method: Option<MapMethod>,
+    #[arg(long, value_parser = choice::<MapOf>(), help = with_default("What is scaled", paper().map.of))]
+    of: Option<MapOf>,
+    #[arg(long, value_name = "N", help = with_default("Random maps that smacof-random starts from", paper().map.starts))]
+    starts: Option<usize>,
     #[command(flatten)]
-    file: SettingsFile,
+    common: SettingsAndSeed,
     /// File for the body map (.npy)
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
@@ -149,15 +170,21 @@ impl Map {
     /// Runs the subcommand.
     pub fn run(self) -> Result<ExitCode> {
         let (input, out, dims) = (&self.distance, &self.out, self.dims);
-        let mut settings = self.file.load(false)?;
+        let mut settings = self.common.load(false)?;
         set(&mut settings.map.method, self.method);
+        set(&mut settings.map.of, self.of);
+        set(&mut settings.map.starts, self.starts);
+        settings.validate()?;
         ensure!(dims >= 1, "--dims is 0, but must be at least 1");
-        let distances = npy::read_distances(input)?;
+        let mut distances = npy::read_distances(input)?;
+        if settings.map.of == MapOf::Rows {
+            distances = between_rows(&distances);
+        }
         let in_file = || input.display().to_string();
         let scaling = ClassicalScaling::new(&distances, dims).with_context(in_file)?;
-        let method = settings.map.method;
+        let random = |d: usize, start: usize| map_stream(settings.experiment.seed, 1, d, start);
         let (maps, improvements) =
-            BodyMaps::new(&distances, &scaling, method, &[dims]).with_context(in_file)?;
+            BodyMaps::new(&distances, &scaling, &settings.map, &[dims], &random).with_context(in_file)?;
         let map = maps.in_dims(dims);
         npy::write_body_map(out, &map)?;
         let fit = match improvements.first() {
@@ -166,9 +193,11 @@ impl Map {
                 100.0 * scaling.agreement(dims)
             ),
             Some(Improvement { start, stress, steps, .. }) => {
-                format!(
-                    "its stress-1 is {stress:.4} after {steps} steps from {start:.4} of the classical map"
-                )
+                let from = match settings.map.method {
+                    MapMethod::SmacofRandom => format!("the best of {} random maps", settings.map.starts),
+                    _ => "the classical map".to_owned(),
+                };
+                format!("its stress-1 is {stress:.4} after {steps} steps from {start:.4} of {from}")
             }
         };
         say(format!(
@@ -193,6 +222,8 @@ pub struct Infer {
     /// The mixture
     #[arg(long, value_parser = choice::<Model>(), default_value = "dpgmm-lj")]
     model: Model,
+    #[arg(long, value_parser = choice::<Sampler>(), help = with_default("Reading of the paper", paper().schema.sampler))]
+    sampler: Option<Sampler>,
     #[arg(long, value_name = "K", help = with_default("Number of components of the weak-limit approximation", paper().schema.components))]
     components: Option<usize>,
     #[arg(long, value_name = "N", help = with_default("Number of independent chains", paper().schema.chains))]
@@ -250,6 +281,7 @@ impl Infer {
     fn settings(&self) -> Result<Settings> {
         let mut settings = self.common.load(false)?;
         let schema = &mut settings.schema;
+        set(&mut schema.sampler, self.sampler);
         set(&mut schema.components, self.components);
         set(&mut schema.chains, self.chains);
         set(&mut schema.sweeps, self.sweeps);

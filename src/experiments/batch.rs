@@ -13,14 +13,16 @@ use indicatif::ProgressBar;
 
 use super::body_files::{BodyFiles, Kept};
 use super::error::ExperimentError;
+use super::shared::{Keys, Shared};
 use crate::files::FileError;
 use crate::files::checkpoint::Checkpoints;
 use crate::pipeline::{
-    BaselineRecord, Body, Condition, FeltBody, Inference, MappedBody, Record, StageError, cluster_and_score,
-    feel, infer_and_score, map_felt,
+    BaselineRecord, Body, Condition, Inference, MappedBody, Record, StageError, cluster_and_score,
+    infer_and_score,
 };
 use crate::settings::Settings;
 use crate::stages::schema::Draw;
+use crate::stages::simulate::Resolution;
 
 /// Steps of the progress bar that a movement counts for.
 const MOVEMENT_STEPS: u64 = 100;
@@ -66,6 +68,8 @@ pub struct Found {
     pub body: Option<Body>,
     /// What is known of that body.
     pub kept: Option<Kept>,
+    /// How well the physics step resolved its movement.
+    pub resolution: Resolution,
 }
 
 /// What a task found, or why it failed.
@@ -99,24 +103,6 @@ impl From<StageError> for Stop {
     }
 }
 
-/// A movement, which is simulated when the first of its tasks needs it.
-struct Movement {
-    /// The pressures, or why it failed.
-    felt: Option<Result<FeltBody, String>>,
-    /// Whether other tasks may need it, too.
-    shared: bool,
-}
-
-impl Movement {
-    fn alone() -> Self {
-        Self { felt: None, shared: false }
-    }
-
-    fn shared() -> Self {
-        Self { felt: None, shared: true }
-    }
-}
-
 impl Batch<'_> {
     /// Length of the progress bar for some tasks.
     pub fn length(tasks: &[Task]) -> u64 {
@@ -133,7 +119,7 @@ impl Batch<'_> {
             self.bar.set_message(task.name.clone());
             let progress = TaskProgress { bar: self.bar, done: AtomicU64::new(0) };
             // Not kept among the checkpoints: what failed may succeed on a machine or with a library that differs.
-            let mut found = match self.try_to_finish(task, &mut Movement::alone(), &progress) {
+            let mut found = match self.try_to_finish(task, &mut Shared::alone(), &progress) {
                 Ok(found) => found,
                 Err(Stop::Failed(reason)) => return Err(ExperimentError::Stage(reason)),
                 Err(Stop::File(error)) => return Err(error.into()),
@@ -159,9 +145,9 @@ impl Batch<'_> {
         let next = AtomicUsize::new(0);
         let work = || {
             while let Some(movement) = movements.get(next.fetch_add(1, Ordering::Relaxed)) {
-                let mut felt = Movement::shared();
+                let mut shared = Shared::by_several();
                 for &at in movement {
-                    match self.finish(&tasks[at], &mut felt) {
+                    match self.finish(&tasks[at], &mut shared) {
                         Ok(outcome) => *outcomes[at].lock().expect("no worker panics") = Some(outcome),
                         Err(error) => {
                             next.store(movements.len(), Ordering::Relaxed);
@@ -185,12 +171,12 @@ impl Batch<'_> {
     }
 
     /// Does what is left of a task, and keeps a failure, so that it is not tried again.
-    fn finish(&self, task: &Task, movement: &mut Movement) -> Result<Outcome, FileError> {
+    fn finish(&self, task: &Task, shared: &mut Shared) -> Result<Outcome, FileError> {
         let progress = TaskProgress { bar: self.bar, done: AtomicU64::new(0) };
         let failed = format!("{}/failed", task.name);
         let outcome = match self.checkpoints.recall(&failed) {
             Some(reason) => Err(reason),
-            None => match self.try_to_finish(task, movement, &progress) {
+            None => match self.try_to_finish(task, shared, &progress) {
                 Ok(found) => Ok(found),
                 Err(Stop::File(error)) => return Err(error),
                 Err(Stop::Failed(reason)) => {
@@ -206,7 +192,7 @@ impl Batch<'_> {
     fn try_to_finish(
         &self,
         task: &Task,
-        movement: &mut Movement,
+        shared: &mut Shared,
         progress: &TaskProgress,
     ) -> Result<Found, Stop> {
         let mut found = Found::default();
@@ -216,14 +202,14 @@ impl Batch<'_> {
             let (mapped, kept) = match files.recall(&task.settings) {
                 Some(recalled) => recalled,
                 None => {
-                    let mapped = map(task, movement, progress)?;
+                    let mapped = map(task, shared, progress)?;
                     files.write(mapped, task.keep == Keep::MapsAndDistances)?
                 }
             };
             (body, found.kept) = (Some(mapped), Some(kept));
         }
         for &condition in &task.conditions {
-            let inference = self.infer(task, condition, &mut body, movement, progress)?;
+            let inference = self.infer(task, condition, &mut body, shared, progress)?;
             found.records.extend(inference.records);
             found.best.push(inference.best);
         }
@@ -231,6 +217,10 @@ impl Batch<'_> {
             let body = body.as_ref().expect("a body that is clustered is kept");
             found.baselines.extend(self.cluster(task, body, dimension)?);
         }
+        found.resolution = match &found.kept {
+            Some(kept) => kept.facts.resolution,
+            None => self.checkpoints.recall(&format!("{}/resolution", task.name)).unwrap_or_default(),
+        };
         found.body = body.filter(|_| found.kept.is_some());
         Ok(found)
     }
@@ -241,7 +231,7 @@ impl Batch<'_> {
         task: &Task,
         condition: Condition,
         body: &mut Option<Body>,
-        movement: &mut Movement,
+        shared: &mut Shared,
         progress: &TaskProgress,
     ) -> Result<Inference, Stop> {
         let name = format!("{}/{}-{}", task.name, condition.model.name(), condition.dimension);
@@ -251,12 +241,19 @@ impl Batch<'_> {
         }
         let body = match body {
             Some(body) => body,
-            none => none.insert(map(task, movement, progress)?.body),
+            none => none.insert(self.map_and_note(task, shared, progress)?),
         };
         let tick = || progress.add(1);
         let found = infer_and_score(body, condition, &task.settings, task.simulation, &tick)?;
         self.checkpoints.keep(&name, &found)?;
         Ok(found)
+    }
+
+    /// The body maps of a task whose files are not kept; keeps how well its movement was resolved.
+    fn map_and_note(&self, task: &Task, shared: &mut Shared, progress: &TaskProgress) -> Result<Body, Stop> {
+        let mapped = map(task, shared, progress)?;
+        self.checkpoints.keep(&format!("{}/resolution", task.name), &mapped.facts.resolution)?;
+        Ok(mapped.body)
     }
 
     /// The clusterings on one body map.
@@ -271,29 +268,17 @@ impl Batch<'_> {
     }
 }
 
-/// Stages 1 to 5 of a task; of tasks that share a movement, the first one simulates it.
-fn map(task: &Task, movement: &mut Movement, progress: &TaskProgress) -> Result<MappedBody, Stop> {
-    let Task { settings, simulation, .. } = task;
-    let felt = movement.felt.get_or_insert_with(|| {
-        let samples = settings.physics.samples(settings.sense.interval) + 1;
-        let seen = Cell::new(0);
-        let tick = || {
-            let (before, now) = (seen.get(), seen.get() + 1);
-            seen.set(now);
-            progress.add(
-                MOVEMENT_STEPS * now as u64 / samples as u64
-                    - MOVEMENT_STEPS * before as u64 / samples as u64,
-            );
-        };
-        feel(settings, *simulation, &tick).map_err(|error| error.to_string())
-    });
-    let felt = felt.as_ref().map_err(|reason| Stop::Failed(reason.clone()))?;
-    let mapped = map_felt(felt, settings, &task.dimensions())?;
-    if !movement.shared {
-        // A third of a gigabyte that nobody needs any more.
-        movement.felt = None;
-    }
-    Ok(mapped)
+/// Stages 1 to 5 of a task; what an earlier task made of the same settings is not made again.
+fn map(task: &Task, shared: &mut Shared, progress: &TaskProgress) -> Result<MappedBody, Stop> {
+    let samples = task.settings.physics.samples(task.settings.sense.interval) + 1;
+    let seen = Cell::new(0);
+    let tick = || {
+        let (before, now) = (seen.get(), seen.get() + 1);
+        seen.set(now);
+        let steps = |seen: usize| MOVEMENT_STEPS * seen as u64 / samples as u64;
+        progress.add(steps(now) - steps(before));
+    };
+    shared.map(&task.settings, task.simulation, &task.dimensions(), &tick).map_err(Stop::Failed)
 }
 
 impl Task {
@@ -329,19 +314,29 @@ impl TaskProgress<'_> {
     }
 }
 
-/// Places of the tasks in their list, those together that need the same pressures.
+/// Places of the tasks in their list, those together that need the same movement, and of these those after each other that
+/// need the same pressures, distances and maps.
 fn by_movement(tasks: &[Task]) -> Vec<Vec<usize>> {
     let mut movements: Vec<Vec<usize>> = Vec::new();
     let mut places: HashMap<String, usize> = HashMap::new();
     for (at, Task { settings, simulation, .. }) in tasks.iter().enumerate() {
-        let Settings { agent, skin, motion, physics, sense, experiment, .. } = settings;
-        let movement = (agent, skin, motion, physics, sense, simulation, experiment.seed);
-        let movement = serde_json::to_string(&movement).expect("settings are plain data");
-        let place = *places.entry(movement).or_insert_with(|| {
+        let place = *places.entry(Keys::of(settings, *simulation, &[]).movement).or_insert_with(|| {
             movements.push(Vec::new());
             movements.len() - 1
         });
         movements[place].push(at);
+    }
+    for movement in &mut movements {
+        // Stable: where nothing is shared, the order of the list stays.
+        let mut order: HashMap<String, usize> = HashMap::new();
+        let mut first = |key: String| {
+            let next = order.len();
+            *order.entry(key).or_insert(next)
+        };
+        movement.sort_by_cached_key(|&at| {
+            let keys = Keys::of(&tasks[at].settings, tasks[at].simulation, &tasks[at].dimensions());
+            [keys.pressures, keys.distances, keys.maps].map(&mut first)
+        });
     }
     movements
 }

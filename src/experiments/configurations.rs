@@ -10,6 +10,7 @@ use crate::files::{FileError, sha256_of_text};
 use crate::pipeline::{Condition, Record};
 use crate::settings::Settings;
 use crate::stages::schema::Model;
+use crate::stages::simulate::Resolution;
 
 /// What a configuration gave in its `experiment.simulations` simulations.
 #[derive(Debug, Clone, Default)]
@@ -18,6 +19,8 @@ pub struct Outcome {
     pub records: Vec<Record>,
     /// Tasks that failed: unstable movement, or distances without a map of the dimensions.
     pub failures: Vec<Failure>,
+    /// How well the physics step resolved the movements of the others: the worst of them in each respect.
+    pub resolution: Resolution,
 }
 
 /// A task that failed.
@@ -61,7 +64,10 @@ pub fn run(configurations: &[Settings], out: &Path, name: &str) -> Result<Vec<Ou
     let mut outcomes = vec![Outcome::default(); configurations.len()];
     for ((at, coordination), outcome) in of_configuration.into_iter().zip(found) {
         match outcome {
-            Ok(Found { records, .. }) => outcomes[at].records.extend(records),
+            Ok(Found { records, resolution, .. }) => {
+                outcomes[at].records.extend(records);
+                outcomes[at].resolution = outcomes[at].resolution.worse(resolution);
+            }
             Err(reason) => outcomes[at].failures.push(Failure { coordination, reason }),
         }
     }

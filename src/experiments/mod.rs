@@ -10,4 +10,5 @@ pub mod reproduce;
 pub mod search;
 mod seeds;
 pub mod sensitivity;
+mod shared;
 pub mod verify;

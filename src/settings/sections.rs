@@ -58,6 +58,7 @@ impl Settings {
         self.sense.check()?;
         self.check_times()?;
         self.quantise.check()?;
+        self.map.check()?;
         self.schema.check(self.sensors())?;
         self.evaluate.check()?;
         self.experiment.check()?;

@@ -83,8 +83,9 @@ fn tree_correct(labels: &[usize], tree: &[Edge], truth: &Truth) -> bool {
         return false;
     }
     let undirected = |a: usize, b: usize| (a.min(b), a.max(b));
-    let mut estimated: Vec<_> =
-        tree.iter().map(|edge| undirected(matching[&edge.child], matching[&edge.parent])).collect();
+    // A node of a single sensor, which the authors' code has, matches no part.
+    let parts = |edge: &Edge| Some(undirected(*matching.get(&edge.child)?, *matching.get(&edge.parent)?));
+    let Some(mut estimated) = tree.iter().map(parts).collect::<Option<Vec<_>>>() else { return false };
     let mut expected: Vec<_> = truth.tree.iter().map(|&(child, parent)| undirected(child, parent)).collect();
     estimated.sort_unstable();
     expected.sort_unstable();

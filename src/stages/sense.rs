@@ -178,7 +178,7 @@ mod tests {
         let identity = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
         let before = Pose { position: [0.3, -0.2, 0.1], rotation: identity };
         let poses = [[before; 5], [now; 5]].concat();
-        let trajectory = Trajectory { parts: 5, joints: 4, poses, angles: vec![] };
+        let trajectory = Trajectory { parts: 5, joints: 4, poses, ..Trajectory::default() };
         let tactile = sense(&agent, &trajectory, &WATER);
         (agent, tactile)
     }
@@ -234,7 +234,7 @@ mod tests {
         let agent = Agent { parts: Vec::new(), joints: Vec::new(), sites: vec![site] };
         let pressure = |way: f64, interval: f64, fluid_density: f64| {
             let poses = vec![pose(0.0), pose(way)];
-            let trajectory = Trajectory { parts: 1, joints: 0, poses, angles: vec![] };
+            let trajectory = Trajectory { parts: 1, poses, ..Trajectory::default() };
             f64::from(sense(&agent, &trajectory, &Sense { interval, fluid_density }).pressures[0])
         };
         let speed = 0.2 / 0.1;

@@ -20,6 +20,8 @@ pub fn bounded(settings: &Settings) -> Settings {
     (skin.around, skin.along, skin.caps) = (skin.around.min(4), skin.along.min(3), skin.caps.min(4));
     let schema = &mut settings.schema;
     (schema.chains, schema.sweeps, schema.burn_in) = (schema.chains.min(2), schema.sweeps.min(3), 0);
+    let map = &mut settings.map;
+    (map.starts, map.steps) = (map.starts.min(2), map.steps.min(20));
     let baselines = &mut settings.baselines;
     baselines.restarts = baselines.restarts.min(2);
     baselines.clusters.retain(|clusters| *clusters <= 5);
@@ -40,7 +42,7 @@ pub fn bounded(settings: &Settings) -> Settings {
 pub fn run_every_stage(settings: &Settings) -> Result<(), StageError> {
     let dimension = settings.experiment.dimensions[0];
     let felt = feel(settings, 1, &|| ())?;
-    let mapped = map_felt(&felt, settings, &[dimension])?;
+    let mapped = map_felt(&felt, settings, 1, &[dimension])?;
     assert!(mapped.distances.values.iter().all(|distance| (0.0..=16.0).contains(distance)));
     for model in Model::ALL {
         let condition = Condition { model, coordination: settings.motion.coordination, dimension };

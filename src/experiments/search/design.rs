@@ -1,10 +1,12 @@
 //! Read the design of a search: its score, its rounds, and the candidates that it tries.
 
+use std::collections::HashSet;
+
 use rand::RngExt;
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 use toml::Table;
 
-use super::super::design::merge;
+use super::super::design::{flat, merge};
 use super::super::error::ExperimentError;
 use crate::analysis::published::{Claim, Experiment, claims};
 use crate::numerics::rng::stream;
@@ -16,16 +18,41 @@ use crate::settings::{Settings, SettingsError};
 pub struct Design {
     /// Master seed of every candidate and of the draws of candidates: a calibration seed.
     pub seed: u64,
-    /// Number of candidates drawn at random.
-    pub candidates: usize,
+    /// How many candidates are drawn at random.
+    pub draws: Draws,
     /// The terms of the score.
     pub score: Vec<Term>,
     /// Rounds, in their order.
     pub round: Vec<Round>,
     /// Named candidates.
+    #[serde(default)]
     pub start: Vec<Candidate>,
     /// What is drawn at random: one option of each.
     pub factor: Vec<Factor>,
+}
+
+/// How many candidates are drawn, so that those that share a movement are simulated once.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Draws {
+    /// Draws of the factors that decide the movement.
+    pub movements: usize,
+    /// For each movement, draws of the factors that decide the distances.
+    pub distances: usize,
+    /// For each matrix of distances, draws of all other factors: one candidate each.
+    pub inferences: usize,
+}
+
+/// What a factor decides, and all that comes after it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Decides {
+    /// How the body moves.
+    Movement,
+    /// What it feels, and the distances between its sensors.
+    Distances,
+    /// The body map and what is inferred from it.
+    Inference,
 }
 
 /// A claim that counts.
@@ -53,7 +80,7 @@ pub struct Round {
 }
 
 /// A candidate for the default settings.
-#[derive(Debug, Clone, Deserialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Candidate {
     /// Its name.
@@ -68,7 +95,36 @@ pub struct Candidate {
 pub struct Factor {
     #[expect(dead_code, reason = "for the reader of the design")]
     name: String,
+    decides: Decides,
     options: Vec<Table>,
+}
+
+/// The candidates that go on to a round, which a search writes for one that continues it elsewhere.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Continuation {
+    /// The round that they go on to, from 1.
+    pub round: usize,
+    /// The candidates, the best first.
+    pub start: Vec<Candidate>,
+}
+
+impl Continuation {
+    /// Reads what a search wrote; `origin` says where it is from.
+    ///
+    /// # Errors
+    /// If it is no such file, or `design` has no such round.
+    pub fn parse(text: &str, origin: &str, design: &Design) -> Result<Self, ExperimentError> {
+        let continuation: Self =
+            toml::from_str(text).map_err(|error| ExperimentError::design(origin, error))?;
+        match (1..=design.round.len()).contains(&continuation.round) {
+            true => Ok(continuation),
+            false => {
+                let message = format!("continues with round {}, which the design lacks", continuation.round);
+                Err(ExperimentError::design(origin, message))
+            }
+        }
+    }
 }
 
 impl Design {
@@ -82,7 +138,7 @@ impl Design {
         if design.round.is_empty() || design.score.is_empty() {
             return Err(wrong("needs a [[round]] and a [[score]] at least".to_owned()));
         }
-        if design.candidates > 0 && design.factor.iter().any(|factor| factor.options.is_empty()) {
+        if design.draws.movements > 0 && design.factor.iter().any(|factor| factor.options.is_empty()) {
             return Err(wrong("has a factor without options".to_owned()));
         }
         let claims = claims();
@@ -93,17 +149,33 @@ impl Design {
     /// All candidates: those with a name, then those drawn at random, each once.
     pub fn all_candidates(&self) -> Vec<Candidate> {
         let mut all = self.start.clone();
-        for number in 1..=self.candidates {
-            let mut rng = stream(self.seed, 0, "candidate", number);
-            let mut settings = Table::new();
-            for factor in &self.factor {
-                merge(&mut settings, &factor.options[rng.random_range(0..factor.options.len())]);
-            }
-            if all.iter().all(|other| other.settings != settings) {
-                all.push(Candidate { name: format!("R{number:02}"), settings });
+        let mut known: HashSet<String> =
+            all.iter().map(|candidate| flat(&candidate.settings).join(",")).collect();
+        let Draws { movements, distances, inferences } = self.draws;
+        for movement in 1..=movements {
+            let moved = self.draw(Decides::Movement, &Table::new(), [0, movement]);
+            for distance in 1..=distances {
+                let felt = self.draw(Decides::Distances, &moved, [movement, distance]);
+                for inference in 1..=inferences {
+                    let number = movement * distances + distance;
+                    let settings = self.draw(Decides::Inference, &felt, [number, inference]);
+                    if known.insert(flat(&settings).join(",")) {
+                        all.push(Candidate { name: format!("{movement}-{distance}-{inference}"), settings });
+                    }
+                }
             }
         }
         all
+    }
+
+    /// Lays an option of each factor of one kind, drawn at random, over `settings`.
+    fn draw(&self, decides: Decides, settings: &Table, [branch, number]: [usize; 2]) -> Table {
+        let mut rng = stream(self.seed, branch, &format!("{decides:?}"), number);
+        let mut settings = settings.clone();
+        for factor in self.factor.iter().filter(|factor| factor.decides == decides) {
+            merge(&mut settings, &factor.options[rng.random_range(0..factor.options.len())]);
+        }
+        settings
     }
 
     /// The settings of a candidate in a round.
@@ -121,8 +193,7 @@ impl Design {
     ///
     /// # Errors
     /// If the settings of one cannot be used.
-    pub fn check(&self) -> Result<(), ExperimentError> {
-        let candidates = self.all_candidates();
+    pub fn check(&self, candidates: &[Candidate]) -> Result<(), ExperimentError> {
         let mut pairs = self.round.iter().flat_map(|round| candidates.iter().map(move |one| (round, one)));
         pairs.try_for_each(|(round, candidate)| Ok(self.settings(round, candidate).map(drop)?))
     }
@@ -151,6 +222,9 @@ mod tests {
 
     #[test]
     fn the_design_of_the_repository_can_be_run() {
-        Design::parse(SEARCH, "search.toml").unwrap().check().unwrap();
+        let design = Design::parse(SEARCH, "search.toml").unwrap();
+        let candidates = design.all_candidates();
+        design.check(&candidates).unwrap();
+        assert!(candidates.len() > 2000, "{} candidates", candidates.len());
     }
 }

@@ -10,5 +10,5 @@ mod page;
 mod run;
 mod score;
 
-pub use self::design::Design;
+pub use self::design::{Continuation, Design};
 pub use self::run::search;

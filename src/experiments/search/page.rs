@@ -1,5 +1,7 @@
 //! Describe a search for people: the candidates of each round, and which claims held together.
 
+use std::collections::BTreeSet;
+
 use super::super::design::flat;
 use super::design::Design;
 use super::score::Tried;
@@ -11,23 +13,29 @@ const SHOWN: usize = 16;
 
 impl Design {
     /// The page of a search, given what was tried in each round.
-    pub fn page(&self, rounds: &[Vec<Tried>]) -> String {
+    pub fn page(&self, rounds: &[(usize, Vec<Tried>)]) -> String {
         let mut lines = vec![format!(
             "{} candidates, seed {}, revision {}. Score: weighted share of claims, in part for those nearly satisfied; \
              the claims and their weights stand in reproduce/search.toml.\n",
-            rounds[0].len(),
+            rounds[0].1.len(),
             self.seed,
             env!("BODYSCHEMA_REVISION")
         )];
-        for (at, tried) in rounds.iter().enumerate() {
-            let shown = if at + 1 == rounds.len() { tried.len() } else { tried.len().min(SHOWN) };
-            let settings = flat(&self.round[at].settings).join(", ");
+        for (at, tried) in rounds {
+            let shown = if at + 1 == self.round.len() { tried.len() } else { tried.len().min(SHOWN) };
+            let settings = flat(&self.round[*at].settings).join(", ");
             lines.push(format!("Round {}: {} candidates, {settings}\n", at + 1, tried.len()));
             lines.extend(self.table_of(&tried[..shown]));
             lines.push(String::new());
         }
-        lines.push("Bold: within the accepted range.\n".to_owned());
-        lines.extend(self.conflicts(&rounds[0]));
+        lines.push(
+            "Bold: within the accepted range. Unresolved: anchors come apart by more than 1 cm, or a part turns by more \
+             than a tenth of a turn in a step; such a candidate never wins.\n"
+                .to_owned(),
+        );
+        for (at, tried) in rounds {
+            lines.extend(self.conflicts(at + 1, tried));
+        }
         lines.join("\n") + "\n"
     }
 
@@ -41,9 +49,14 @@ impl Design {
         let claims = self.claims();
         let header = [&["candidate", "score"], &claims[..], &["settings"]].concat();
         let mut lines = vec![row(&header), rule(header.len())];
-        for Tried { candidate, score, failures, terms } in tried {
+        for Tried { candidate, score, failures, resolution, terms } in tried {
             let failed = match failures.first() {
-                None => String::new(),
+                None if resolution.is_resolved() => String::new(),
+                None => format!(
+                    "; unresolved: {:.0} mm, {:.2} turns",
+                    1e3 * resolution.anchor_separation,
+                    resolution.turn
+                ),
                 Some(first) => format!("; {} parts failed: {}", failures.len(), first.reason),
             };
             let mut cells = vec![candidate.name.clone(), format!("{score:.3}")];
@@ -54,30 +67,33 @@ impl Design {
         lines
     }
 
-    /// How often each claim holds, alone and with each other, among the candidates of the first round, which tries all
-    /// of them alike.
-    fn conflicts(&self, tried: &[Tried]) -> Vec<String> {
-        let (names, held) = (self.claims(), Held::of(tried));
+    /// How often each claim holds, alone and with each other, among the resolved candidates of a round, and the largest
+    /// sets of claims that hold together.
+    fn conflicts(&self, round: usize, tried: &[Tried]) -> Vec<String> {
+        let held = Held::of(tried);
+        let tested: Vec<usize> = (0..self.score.len()).filter(|&claim| held.tested(tried, claim)).collect();
+        let names = self.claims();
         let mut lines = vec![
             format!(
-                "How often two claims hold together, of {} candidates without a failure in round 1 (the diagonal: alone)\n",
+                "How often two claims hold together, of {} resolved candidates without a failure in round {round} (the \
+                 diagonal: alone)\n",
                 held.0.len()
             ),
-            row(std::iter::once("").chain(names.iter().copied())).replacen("|  |", "| |", 1),
-            rule(names.len() + 1),
+            row(std::iter::once("").chain(tested.iter().map(|&a| names[a]))).replacen("|  |", "| |", 1),
+            rule(tested.len() + 1),
         ];
-        for (a, name) in names.iter().enumerate() {
-            let counts = (0..names.len()).map(|b| held.together(&[a, b]).to_string());
-            lines.push(row(std::iter::once((*name).to_owned()).chain(counts)));
+        for &a in &tested {
+            let counts = tested.iter().map(|&b| held.together(&[a, b]).to_string());
+            lines.push(row(std::iter::once(names[a].to_owned()).chain(counts)));
         }
-        let all: Vec<usize> = (0..names.len()).collect();
-        lines.push(format!("\nAll claims together hold for {} of them.", held.together(&all)));
-        let never: Vec<&str> = all.iter().filter(|&&a| held.together(&[a]) == 0).map(|&a| names[a]).collect();
+        lines.push(format!("\nAll of these claims together hold for {} of them.", held.together(&tested)));
+        let never: Vec<&str> =
+            tested.iter().filter(|&&a| held.together(&[a]) == 0).map(|&a| names[a]).collect();
         if !never.is_empty() {
             lines.push(format!("Never satisfied: {}.", never.join(", ")));
         }
-        for a in 0..names.len() {
-            for b in a + 1..names.len() {
+        for (at, &a) in tested.iter().enumerate() {
+            for &b in &tested[at + 1..] {
                 let (one, other) = (held.together(&[a]), held.together(&[b]));
                 if one > 0 && other > 0 && held.together(&[a, b]) == 0 {
                     let (first, second) = (names[a], names[b]);
@@ -86,6 +102,15 @@ impl Design {
                 }
             }
         }
+        lines.push(
+            "\nThe largest sets of claims that hold together, and for how many candidates\n".to_owned(),
+        );
+        lines.extend([row(["claims", "candidates", "which"]), rule(3)]);
+        for (set, count) in held.largest_sets() {
+            let which = set.iter().map(|&claim| names[claim]).collect::<Vec<_>>().join(", ");
+            lines.push(row([set.len().to_string(), count.to_string(), which]));
+        }
+        lines.push(String::new());
         lines
     }
 }
@@ -96,12 +121,15 @@ fn value(judged: &Judged) -> String {
     if judged.verdict == Verdict::Reproduced { format!("**{value}**") } else { value }
 }
 
-/// Which claims hold for each candidate that did not fail.
+/// Sets of claims that are shown.
+const SETS: usize = 8;
+
+/// Which claims hold for each resolved candidate that did not fail.
 struct Held(Vec<Vec<bool>>);
 
 impl Held {
     fn of(tried: &[Tried]) -> Self {
-        let stable = tried.iter().filter(|tried| tried.failures.is_empty());
+        let stable = tried.iter().filter(|tried| tried.failures.is_empty() && tried.resolution.is_resolved());
         let holds = |(judged, _): &(Judged, f64)| judged.verdict == Verdict::Reproduced;
         Self(stable.map(|tried| tried.terms.iter().map(holds).collect()).collect())
     }
@@ -109,5 +137,23 @@ impl Held {
     /// Candidates for which all of some claims hold.
     fn together(&self, claims: &[usize]) -> usize {
         self.0.iter().filter(|held| claims.iter().all(|&claim| held[claim])).count()
+    }
+
+    /// Whether a claim has a value for some candidate of the round.
+    fn tested(&self, tried: &[Tried], claim: usize) -> bool {
+        tried.iter().any(|tried| tried.terms[claim].0.reproduced.value.is_some())
+    }
+
+    /// The sets of claims that hold for some candidate and are part of no larger one, the largest first, with the number
+    /// of candidates for which all of a set hold.
+    fn largest_sets(&self) -> Vec<(Vec<usize>, usize)> {
+        let set = |held: &Vec<bool>| (0..held.len()).filter(|&claim| held[claim]).collect::<Vec<_>>();
+        let all: BTreeSet<Vec<usize>> = self.0.iter().map(set).collect();
+        let within = |a: &[usize], b: &[usize]| a.len() < b.len() && a.iter().all(|claim| b.contains(claim));
+        let maximal = all.iter().filter(|one| !all.iter().any(|other| within(one, other)));
+        let mut sets: Vec<_> = maximal.map(|set| (set.clone(), self.together(set))).collect();
+        sets.sort_by(|a, b| (b.0.len(), b.1).cmp(&(a.0.len(), a.1)));
+        sets.truncate(SETS);
+        sets
     }
 }

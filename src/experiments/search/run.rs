@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::super::configurations::run;
 use super::super::design::flat;
 use super::super::error::ExperimentError;
-use super::design::Design;
+use super::design::{Continuation, Design};
 use super::score::Tried;
 use crate::analysis::claims::Verdict;
 use crate::analysis::published::Experiment;
@@ -22,6 +22,9 @@ struct ScoreRow {
     rank: usize,
     candidate: String,
     score: f64,
+    resolved: bool,
+    anchor_separation: f64,
+    turn: f64,
     /// Terms of the score that are satisfied.
     satisfied: usize,
     terms: usize,
@@ -29,6 +32,8 @@ struct ScoreRow {
     failures: usize,
     /// The first failure's reason.
     failure: String,
+    /// Names of the claims that hold.
+    hold: String,
     settings: String,
 }
 
@@ -51,17 +56,22 @@ struct CreditRow {
     credit: f64,
 }
 
-/// Runs a search, and writes into `out`: scores.csv, credits.csv, search.md and best.toml.
+/// Candidates of each round whose claims are in credits.csv, the best ones.
+const CREDITED: usize = 100;
+
+/// Runs a search, or its rounds from that on which `from` says, and writes into `out`: scores.csv, credits.csv, search.md,
+/// best.toml and, after every round but the last, next.toml.
 ///
 /// # Errors
 /// If a candidate's settings cannot be used, or a file cannot be written.
-pub fn search(design: &Design, out: &Path) -> Result<String, ExperimentError> {
+pub fn search(design: &Design, from: Option<Continuation>, out: &Path) -> Result<String, ExperimentError> {
+    let first = from.as_ref().map_or(0, |from| from.round - 1);
+    let mut candidates = from.map_or_else(|| design.all_candidates(), |from| from.start);
     // Before hours are spent on those that come first.
-    design.check()?;
-    let mut candidates = design.all_candidates();
+    design.check(&candidates)?;
     let mut folder = ResultFolder::new(out);
     let (mut scores, mut credits, mut rounds) = (Vec::new(), Vec::new(), Vec::new());
-    for (at, round) in design.round.iter().enumerate() {
+    for (at, round) in design.round.iter().enumerate().skip(first) {
         candidates.truncate(round.candidates);
         let configurations: Vec<Settings> = candidates
             .iter()
@@ -73,21 +83,32 @@ pub fn search(design: &Design, out: &Path) -> Result<String, ExperimentError> {
             .zip(configurations.iter().zip(&outcomes))
             .map(|(candidate, (settings, outcome))| design.judge(candidate, settings, outcome))
             .collect();
-        // Stable: of equal scores the earlier candidate stays ahead.
-        tried.sort_by(|a, b| b.score.total_cmp(&a.score));
+        // Movements that the step resolves come first. Stable: of equal scores the earlier candidate stays ahead.
+        tried.sort_by(|a, b| {
+            let resolved = |tried: &Tried| tried.resolution.is_resolved() && tried.failures.is_empty();
+            resolved(b).cmp(&resolved(a)).then(b.score.total_cmp(&a.score))
+        });
         for (rank, tried) in tried.iter().enumerate() {
             scores.push(tried.score_row(at + 1, rank + 1));
-            credits.extend(design.credit_rows(at + 1, tried));
+            if rank < CREDITED {
+                credits.extend(design.credit_rows(at + 1, tried));
+            }
         }
         candidates = tried.iter().map(|tried| tried.candidate.clone()).collect();
-        rounds.push(tried);
+        if let Some(next) = design.round.get(at + 1) {
+            let start = candidates.iter().take(next.candidates).cloned().collect();
+            let next =
+                toml::to_string(&Continuation { round: at + 2, start }).expect("tables can be written");
+            folder.write_text("next.toml", &format!("# Candidates of the next round.\n{next}"))?;
+        }
+        rounds.push((at, tried));
         // After each round, so that a search that is stopped has shown something.
         folder.write_rows("scores.csv", &scores)?;
         folder.write_rows("credits.csv", &credits)?;
     }
     let page = design.page(&rounds);
     folder.write_text("search.md", &page)?;
-    let best = &rounds.last().expect("there is a round")[0].candidate;
+    let best = &rounds.last().expect("there is a round").1[0].candidate;
     let overlay = toml::to_string(&best.settings).expect("a table can be written");
     folder.write_text("best.toml", &format!("# Candidate {}.\n{overlay}", best.name))?;
     folder.write_manifest(Manifest::of_study("search", design.seed))?;
@@ -95,6 +116,12 @@ pub fn search(design: &Design, out: &Path) -> Result<String, ExperimentError> {
 }
 
 impl Tried {
+    /// Names of the claims that hold.
+    fn holding(&self) -> impl Iterator<Item = &str> {
+        let hold = self.terms.iter().filter(|(judged, _)| judged.verdict == Verdict::Reproduced);
+        hold.map(|(judged, _)| judged.claim.id.as_str())
+    }
+
     fn score_row(&self, round: usize, rank: usize) -> ScoreRow {
         ScoreRow {
             round,
@@ -105,6 +132,10 @@ impl Tried {
             terms: self.terms.len(),
             failures: self.failures.len(),
             failure: self.failures.first().map_or(String::new(), |failure| failure.reason.clone()),
+            resolved: self.resolution.is_resolved(),
+            anchor_separation: self.resolution.anchor_separation,
+            turn: self.resolution.turn,
+            hold: self.holding().collect::<Vec<_>>().join(" "),
             settings: flat(&self.candidate.settings).join(", "),
         }
     }

@@ -7,6 +7,7 @@ use crate::analysis::measure::Evidence;
 use crate::analysis::published::Experiment;
 use crate::settings::Settings;
 use crate::stages::schema::Model;
+use crate::stages::simulate::Resolution;
 
 /// A candidate that has been tried.
 pub struct Tried {
@@ -16,6 +17,8 @@ pub struct Tried {
     pub score: f64,
     /// What failed.
     pub failures: Vec<Failure>,
+    /// How well the physics step resolved its movements.
+    pub resolution: Resolution,
     /// Verdict and credit of each term.
     pub terms: Vec<(Judged, f64)>,
 }
@@ -43,7 +46,8 @@ impl Design {
         let weighted = terms.iter().zip(&self.score).map(|((_, credit), term)| credit * term.weight);
         let score = weighted.sum::<f64>() / total;
         let score = if outcome.failures.is_empty() { score } else { 0.0 };
-        Tried { candidate, score, failures: outcome.failures.clone(), terms }
+        let (failures, resolution) = (outcome.failures.clone(), outcome.resolution);
+        Tried { candidate, score, failures, resolution, terms }
     }
 }
 

@@ -2,16 +2,21 @@
 //!
 //! In: [`Distances`](super::distance::Distances), M × M. Out: a [`BodyMap`], M × d, in the unit of the distances.
 //! The paper says "MDS" and cites Kruskal; which variant it ran is open. [Classical](ClassicalScaling) scaling is the
-//! default; metric and nonmetric scaling by [majorisation](smacof()) start from its map.
+//! default; metric and nonmetric scaling by [majorisation](smacof()) start from its map, or from
+//! [random](Descent) maps. Scaled are the distances themselves, or those [between their rows](between_rows).
 
 mod classical;
 mod coordinates;
 mod maps;
+mod random_starts;
+mod rows;
 mod settings;
 mod smacof;
 
 pub use self::classical::{ClassicalScaling, MapError};
 pub use self::coordinates::BodyMap;
 pub use self::maps::BodyMaps;
-pub use self::settings::{Map, MapMethod};
+pub use self::random_starts::{Descended, Descent};
+pub use self::rows::between_rows;
+pub use self::settings::{Map, MapMethod, MapOf};
 pub use self::smacof::{Fit, Improvement, Majorisation, smacof};

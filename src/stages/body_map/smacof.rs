@@ -226,7 +226,7 @@ fn isotonic(values: &[f64]) -> Vec<f64> {
 }
 
 /// n × n: Euclidean distances within a map; exactly symmetric.
-fn euclidean(map: &BodyMap) -> Vec<f64> {
+pub fn euclidean(map: &BodyMap) -> Vec<f64> {
     let (n, dims) = (map.points(), map.dims);
     // By columns, so that the inner loop goes over points and becomes vector instructions.
     let columns: Vec<f64> =

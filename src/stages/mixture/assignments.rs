@@ -4,6 +4,7 @@
 //! squares, so it is left as soon as it is known to be too large to matter. Where neighbours in the list of
 //! points are neighbours on the body, that takes 40 % off a sweep.
 
+use rand::distr::weighted::WeightedIndex;
 use rand::{Rng, RngExt};
 
 use super::gaussian::Gaussian;
@@ -17,21 +18,44 @@ type Block = [f64; BLOCK];
 /// number (2⁻⁵³) even 3000 times over.
 const NEGLIGIBLE: f64 = -45.0;
 
+/// A weight of this logarithm or less may be of densities that underflow.
+const MAY_UNDERFLOW: f64 = -700.0;
+
 /// Draws z_i ~ Categorical ∝ π_k N(x_i; μ_k, Σ_k) for each point, and overwrites `labels` with it.
+///
+/// With `underflow`, weights are products of densities, not sums of their logarithms: a point at which all of them are 0
+/// in floating point keeps its label.
 pub fn draw_labels(
     points: &Points,
     gaussians: &[Gaussian],
     log_weights: &[f64],
+    underflow: bool,
     labels: &mut [usize],
     rng: &mut impl Rng,
 ) {
+    let mut far = Vec::new();
     vectorised(
         #[inline(always)]
-        || draw_labels_in_lanes(points, gaussians, log_weights, labels, rng),
+        || draw_labels_in_lanes(points, gaussians, log_weights, underflow, labels, &mut far, rng),
     );
+    // Points at which all densities are tiny are few, but at the beginning of a chain.
+    if !far.is_empty() {
+        let largest = log_weights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let weights: Vec<f64> = log_weights.iter().map(|weight| (weight - largest).exp()).collect();
+        let total: f64 = weights.iter().sum();
+        for (i, before) in far {
+            let row = points.row(i);
+            let weigh =
+                |(gaussian, weight): (&Gaussian, &f64)| gaussian.log_density(row).exp() * (weight / total);
+            let products = gaussians.iter().zip(&weights).map(weigh);
+            let drawn = WeightedIndex::new(products);
+            labels[i] = drawn.map_or(before, |drawn| rng.sample(drawn));
+        }
+    }
 }
 
-/// Does the work of [`draw_labels`], with whichever vector instructions it is compiled for.
+/// Does the work of [`draw_labels`], with whichever vector instructions it is compiled for; `far` gets the points whose
+/// densities may underflow, with the labels that they had.
 ///
 /// It is long because the loop over a block of points must stay one function that the compiler vectorises: calls
 /// between its steps would pass whole blocks through memory.
@@ -40,13 +64,15 @@ fn draw_labels_in_lanes(
     points: &Points,
     gaussians: &[Gaussian],
     log_weights: &[f64],
+    underflow: bool,
     labels: &mut [usize],
+    far: &mut Vec<(usize, usize)>,
     rng: &mut impl Rng,
 ) {
     // The components that matter to some point of the block, with its log weights.
     let mut near: Vec<(usize, Block)> = Vec::with_capacity(gaussians.len());
     let mut cumulative = vec![0.0; gaussians.len()];
-    for (block, labels) in points.blocks().zip(labels.chunks_mut(BLOCK)) {
+    for ((at, block), labels) in points.blocks().enumerate().zip(labels.chunks_mut(BLOCK)) {
         near.clear();
         let mut largest = [f64::NEG_INFINITY; BLOCK];
         // First one that is likely close, so that the others are left early.
@@ -65,6 +91,10 @@ fn draw_labels_in_lanes(
                 }
                 near.push((k, logs));
             }
+        }
+        if underflow {
+            let lanes = labels.iter().enumerate().filter(|(lane, _)| largest[*lane] < MAY_UNDERFLOW);
+            far.extend(lanes.map(|(lane, label)| (at * BLOCK + lane, *label)));
         }
         // Nothing is left to chance in most blocks of a body: 8 % of a sweep.
         if let [(only, _)] = near[..] {
@@ -187,12 +217,14 @@ mod tests {
             let gaussians: Vec<Gaussian> = (0..5).map(|_| gaussian(dims, &mut rng)).collect();
             let weights = [-1.0, -2.0, -0.5, -4.0, -200.0];
             let (mut found, mut portable) = (vec![0; points.count], vec![0; points.count]);
-            draw_labels(&points, &gaussians, &weights, &mut found, &mut stream(1, 1, "labels", 1));
+            draw_labels(&points, &gaussians, &weights, false, &mut found, &mut stream(1, 1, "labels", 1));
             draw_labels_in_lanes(
                 &points,
                 &gaussians,
                 &weights,
+                false,
                 &mut portable,
+                &mut Vec::new(),
                 &mut stream(1, 1, "labels", 1),
             );
             assert_eq!(found, portable, "d = {dims}");

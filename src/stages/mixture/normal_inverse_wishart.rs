@@ -11,8 +11,17 @@ use rand::{Rng, RngExt};
 use rand_distr::{ChiSquared, StandardNormal};
 
 use super::augmented::Augmented;
-use super::gaussian::{Gaussian, Rounding};
+use super::gaussian::{Gaussian, Rounding, standard_normal};
 use super::points::SufficientStatistics;
+
+/// The covariance of μ given Σ.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum MeanSpread {
+    /// Σ / k.
+    Component,
+    /// Ψ⁻¹ / k, which is no normal-inverse-Wishart: what the first author's code computes.
+    InverseScale,
+}
 
 /// NIW(m, k, Ψ, ν): Σ ~ inverse-Wishart(Ψ, ν), μ ~ N(m, Σ / k).
 #[derive(Debug, Clone)]
@@ -58,6 +67,20 @@ impl NormalInverseWishart {
         DVector::from_iterator(self.moments.dims, self.moments.border().map(|b| b / weight))
     }
 
+    /// Ψ (d × d).
+    pub fn scale(&self) -> DMatrix<f64> {
+        let root = DMatrix::from_fn(self.scale.dims, self.scale.dims, |i, j| {
+            if i <= j { self.scale.row(i)[j] } else { 0.0 }
+        });
+        root.tr_mul(&root)
+    }
+
+    /// The same distribution with Ψ⁻¹ for Ψ; `None` if that is not positive definite in floating point.
+    pub fn with_inverse_scale(&self) -> Option<Self> {
+        let inverse = self.scale().cholesky()?.inverse();
+        Self::new(self.mean(), self.mean_weight(), inverse, self.degrees_of_freedom)
+    }
+
     /// k > 0, in observations.
     pub fn mean_weight(&self) -> f64 {
         self.moments.corner()
@@ -79,6 +102,11 @@ impl NormalInverseWishart {
     /// B_ii² ~ χ²(ν − d + i) and normal above, Λ = U⁻¹ B Bᵀ U⁻ᵀ, so that Pᵀ = U⁻¹ B is upper triangular.
     /// μ = m + P⁻¹ z / √k with z standard normal, so that P μ = P m + z / √k.
     pub fn draw(&self, rng: &mut impl Rng) -> Gaussian {
+        self.draw_spread(MeanSpread::Component, rng)
+    }
+
+    /// Draws (μ, Σ) with another covariance of μ: μ = m + U⁻¹ z / √k has the covariance Ψ⁻¹ / k.
+    pub fn draw_spread(&self, mean_spread: MeanSpread, rng: &mut impl Rng) -> Gaussian {
         let dims = self.scale.dims;
         let mut columns = Augmented::zeros(dims);
         for i in 0..dims {
@@ -92,10 +120,18 @@ impl NormalInverseWishart {
         self.scale.solve(&mut columns);
         let mut rows = Augmented::zeros(dims);
         let spread = 1.0 / self.mean_weight().sqrt();
-        let mean = self.mean();
+        let mut mean = self.mean();
+        if mean_spread == MeanSpread::InverseScale {
+            let mut offset = standard_normal(dims, rng) * spread;
+            self.scale.solve_vector(offset.as_mut_slice());
+            mean += offset;
+        }
         for i in 0..dims {
             let row = rows.row_mut(i);
-            let mut shift = spread * rng.sample::<f64, _>(StandardNormal);
+            let mut shift = match mean_spread {
+                MeanSpread::Component => spread * rng.sample::<f64, _>(StandardNormal),
+                MeanSpread::InverseScale => 0.0,
+            };
             for j in 0..=i {
                 row[j] = columns.row(j)[i];
                 shift += row[j] * mean[j];

@@ -39,6 +39,11 @@ impl Points {
         position.iter().zip(&self.centre).map(|(x, mean)| x + mean).collect()
     }
 
+    /// Where the origin of the body map is among the centred points.
+    pub fn origin(&self) -> DVector<f64> {
+        -DVector::from_column_slice(&self.centre)
+    }
+
     /// Takes points as they are, by rows.
     pub(crate) fn from_rows(dims: usize, rows: Vec<f64>) -> Self {
         let count = rows.len() / dims;
@@ -106,8 +111,14 @@ impl SufficientStatistics {
         self.moments.add_outer(std::iter::once(bordered(x).as_slice()));
     }
 
+    /// x̄; 0 if there are no points.
+    pub fn mean(&self) -> DVector<f64> {
+        let count = self.count().max(1.0);
+        DVector::from_iterator(self.moments.dims, self.moments.border().map(|sum| sum / count))
+    }
+
     /// Σ (x − x̄)(x − x̄)ᵀ of at least one point.
-    fn scatter(&self) -> DMatrix<f64> {
+    pub fn scatter(&self) -> DMatrix<f64> {
         let mut scatter = self.moments.clone();
         scatter.eliminate_border();
         DMatrix::from_fn(scatter.dims, scatter.dims, |i, j| scatter.row(i.min(j))[i.max(j)])

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::draw::Draw;
 use super::error::{InferenceError, MAX_LABELS, matrices_fit};
 use super::gibbs::Chain;
-use super::prior::fraley_raftery;
+use super::prior::prior;
 use super::settings::{Keep, Model, Schema};
 use crate::numerics::rng::{Stream, stream};
 use crate::stages::body_map::BodyMap;
@@ -29,7 +29,7 @@ pub fn infer(
 ) -> Result<Vec<Draw>, InferenceError> {
     check_size(map, settings)?;
     let points = Points::new(map);
-    let prior = fraley_raftery(&points, settings)?;
+    let prior = prior(&points, settings)?;
     let stage = format!("{} {}", model.name(), map.dims);
     let chains: Result<Vec<Vec<Draw>>, InferenceError> = (0..settings.chains)
         .into_par_iter()
@@ -80,8 +80,8 @@ fn run_chain(
                 chain,
                 sweep,
                 labels: state.labels.clone(),
-                tree: state.tree(),
-                joints: state.joints.iter().map(|joint| points.uncentred(&joint.position)).collect(),
+                tree: state.edges(),
+                joints: state.tree.joints.iter().map(|joint| points.uncentred(&joint.position)).collect(),
                 log_posterior: Some(state.log_posterior()?),
             });
         }

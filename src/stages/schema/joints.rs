@@ -27,9 +27,14 @@ pub fn draw_between(s: &Augmented, c: &Augmented, rng: &mut impl Rng) -> Result<
     Ok(q)
 }
 
-/// −log (N(q; μ_s, Σ_s) N(q; μ_c, Σ_c)), the quadratic cost of equation 22.
-pub fn cost(q: &DVector<f64>, s: &Gaussian, c: &Gaussian) -> f64 {
-    -s.log_density(q.as_slice()) - c.log_density(q.as_slice())
+/// −log (N(q; μ_s, Σ_s) N(q; μ_c, Σ_c)), the quadratic cost of equation 22; where `floor` is positive, it is added to
+/// both densities.
+pub fn cost(q: &DVector<f64>, s: &Gaussian, c: &Gaussian, floor: f64) -> f64 {
+    let log_density = |gaussian: &Gaussian| {
+        let log = gaussian.log_density(q.as_slice());
+        if floor > 0.0 { (log.exp() + floor).ln() } else { log }
+    };
+    -log_density(s) - log_density(c)
 }
 
 /// The cost of equation 22 with the joint q integrated out: −log N(μ_s; μ_c, Σ_s + Σ_c).
@@ -59,7 +64,7 @@ mod tests {
     /// Integral over the real line of N(q; s) N(q; c) from −∞ to `end`, by the midpoint rule.
     fn product_mass(s: &Gaussian, c: &Gaussian, end: f64) -> f64 {
         const STEP: f64 = 1e-3;
-        let density = |q: f64| (-cost(&DVector::from_element(1, q), s, c)).exp();
+        let density = |q: f64| (-cost(&DVector::from_element(1, q), s, c, 0.0)).exp();
         let steps = ((end + 10.0) / STEP) as usize;
         (0..steps).map(|i| density(-10.0 + (i as f64 + 0.5) * STEP) * STEP).sum()
     }

@@ -1,19 +1,22 @@
-//! Choose the prior of the components from the body map (Fraley & Raftery 2007), which the paper leaves open.
+//! Choose the prior of the components from the settings and the body map; the paper leaves it open.
 
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
 
 use super::error::InferenceError;
-use super::settings::Schema;
+use super::settings::{Prior, Schema};
 use crate::stages::mixture::{NormalInverseWishart, Points};
 
-/// The prior of Fraley & Raftery (2007), section 3.2: m₀ the mean of the points, k₀ = 0.01, ν₀ = d + 2,
-/// Ψ₀ = covariance / K^(2/d); k₀, ν₀ − d, K and a factor on Ψ₀ are settings.
+/// The prior NIW(m₀, k₀, Ψ₀, ν₀): m₀ the mean of the points, ν₀ − d and k₀ by the settings, and one of three scales Ψ₀.
+///
+/// * Fraley & Raftery (2007), section 3.2: Ψ₀ = covariance / K^(2/d), with k₀ = 0.01 and ν₀ = d + 2.
+/// * The identity, which the first author's code has, with k₀ = 0.1 and ν₀ = d + 1: so the unit of the map matters.
+/// * The inverse covariance, 10 times, which a comment in that code has.
 ///
 /// # Errors
-/// [`InferenceError::Flat`] if the covariance is singular.
-pub fn fraley_raftery(points: &Points, settings: &Schema) -> Result<NormalInverseWishart, InferenceError> {
+/// [`InferenceError::Flat`] if the covariance is singular where the scale needs it, [`InferenceError::Scale`] if the
+/// points spread too far to compute with.
+pub fn prior(points: &Points, settings: &Schema) -> Result<NormalInverseWishart, InferenceError> {
     let dims = points.dims;
-    let shrink = settings.scale / (settings.components as f64).powf(2.0 / dims as f64);
     let covariance = points.covariance();
     // A relative bound: the Cholesky factorisation alone would let rounding pass for spread.
     let spread = covariance.diagonal().max();
@@ -21,18 +24,17 @@ pub fn fraley_raftery(points: &Points, settings: &Schema) -> Result<NormalInvers
     if spread > 0.0 && !(1e-50..=1e50).contains(&deviation) {
         return Err(InferenceError::Scale(deviation));
     }
-    let flat = !covariance
-        .clone()
-        .cholesky()
-        .is_some_and(|root| root.l_dirty().diagonal().min().powi(2) > 1e-12 * spread);
-    let prior = NormalInverseWishart::new(
-        DVector::zeros(dims),
-        settings.mean_weight,
-        covariance * shrink,
-        dims as f64 + settings.extra_freedom,
-    );
-    if flat {
-        return Err(InferenceError::Flat { points: points.count, dims });
-    }
-    prior.ok_or(InferenceError::Rounding)
+    let root =
+        covariance.clone().cholesky().filter(|root| root.l_dirty().diagonal().min().powi(2) > 1e-12 * spread);
+    let flat = InferenceError::Flat { points: points.count, dims };
+    let scale = match settings.prior {
+        Prior::FraleyRaftery => {
+            root.map(|_| covariance * (settings.scale / (settings.components as f64).powf(2.0 / dims as f64)))
+        }
+        Prior::Identity => Some(DMatrix::identity(dims, dims) * settings.scale),
+        Prior::InverseCovariance => root.map(|root| root.inverse() * settings.scale),
+    };
+    let freedom = dims as f64 + settings.extra_freedom;
+    NormalInverseWishart::new(DVector::zeros(dims), settings.mean_weight, scale.ok_or(flat)?, freedom)
+        .ok_or(InferenceError::Rounding)
 }

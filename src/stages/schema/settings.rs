@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::departures::Departures;
 use super::error::MAX_LABELS;
 use crate::numerics::range::{Checked, check, count, moderate};
 
@@ -40,7 +41,7 @@ pub enum EdgeWeight {
     Collapsed,
 }
 
-/// The labels that a chain starts with.
+/// What a chain starts with.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Start {
@@ -50,6 +51,30 @@ pub enum Start {
     KMeans,
     /// All points in one component.
     Single,
+    /// Weights by stick-breaking, labels from them alone, means by k-means, and identity covariances.
+    StickBreaking,
+}
+
+/// The scale Ψ₀ of the components' prior; the setting `scale` multiplies it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Prior {
+    /// covariance(x) / K^(2/d), by Fraley & Raftery (2007).
+    FraleyRaftery,
+    /// The identity, in the unit of the map.
+    Identity,
+    /// covariance(x)⁻¹.
+    InverseCovariance,
+}
+
+/// The reading of the paper that the sampler follows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Sampler {
+    /// The paper's equations.
+    Equations,
+    /// The first author's public code, as [`Departures`] from the equations.
+    AuthorsCode,
 }
 
 /// Which draws of a chain are kept.
@@ -66,6 +91,8 @@ pub enum Keep {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Schema {
+    /// The reading of the paper that the sampler follows.
+    pub sampler: Sampler,
     /// K, number of components of the weak-limit approximation.
     pub components: usize,
     /// γ of Dir(γ/K).
@@ -74,11 +101,13 @@ pub struct Schema {
     pub mean_weight: f64,
     /// ν₀ − d, where ν₀ > d − 1 are the degrees of freedom of the inverse Wishart.
     pub extra_freedom: f64,
-    /// Multiplies the prior scale Ψ₀ = covariance(x) / K^(2/d) of Fraley & Raftery (2007).
+    /// The prior scale Ψ₀.
+    pub prior: Prior,
+    /// Multiplies the prior scale.
     pub scale: f64,
     /// Weight of the tree's edges.
     pub edge_weight: EdgeWeight,
-    /// The labels that a chain starts with.
+    /// What a chain starts with.
     pub start: Start,
     /// Gibbs sweeps of each chain.
     pub sweeps: usize,
@@ -88,9 +117,19 @@ pub struct Schema {
     pub keep: Keep,
     /// Sweeps dropped where every draw is kept.
     pub burn_in: usize,
+    /// How the authors' code departs from the equations; they count where it is the sampler.
+    pub authors: Departures,
 }
 
 impl Schema {
+    /// How the sampler departs from the equations.
+    pub fn departures(&self) -> Departures {
+        match self.sampler {
+            Sampler::Equations => Departures::NONE,
+            Sampler::AuthorsCode => self.authors.clone(),
+        }
+    }
+
     /// Number of draws that are kept.
     pub fn draws(&self) -> usize {
         match self.keep {
@@ -117,6 +156,7 @@ impl Schema {
         if self.keep == Keep::All {
             check("schema.burn_in", self.burn_in, self.burn_in < self.sweeps, "below schema.sweeps")?;
         }
+        self.authors.check()?;
         let draws = self.draws();
         check(
             "schema.chains * (schema.sweeps - schema.burn_in)",

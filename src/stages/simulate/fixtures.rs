@@ -1,6 +1,6 @@
 //! Build a small body and its movement for the tests of this stage.
 
-use super::settings::{AngleError, Motion, Physics, Targets};
+use super::settings::{AngleError, Controller, Motion, Physics, Targets};
 use crate::stages::agent::{Agent, Geometry, Morphology, Skin};
 
 /// Everything that a simulation needs.
@@ -28,8 +28,11 @@ impl Scene {
                 coordination: 0.9,
                 epoch: 500,
                 targets: Targets::Each,
+                controller: Controller::Torque,
                 stiffness: 1.1,
                 damping: 0.5,
+                servo_gain: 10.0,
+                servo_torque: 100.0,
                 error: AngleError::Shortest,
             },
             physics: Physics { step: 0.01, duration: 200.0, turn_limit: 1e6 },

@@ -1,7 +1,7 @@
 //! Stage 1, `simulate`: move an [agent](super::agent) at random in Open Dynamics Engine (section 5.1).
 //!
 //! In: a body, settings of its [`Motion`] and of the [`Physics`] engine. Out: a [`Trajectory`], the pose of every part
-//! and the angles of every joint every Δt.
+//! and the angles of every joint every Δt, with how well the step resolved the movement.
 
 #[cfg(test)]
 pub(crate) mod fixtures;
@@ -11,6 +11,6 @@ mod settings;
 #[allow(unsafe_code, reason = "the physics engine is a C library")]
 mod world;
 
-pub use self::movement::{Trajectory, simulate};
-pub use self::settings::{AngleError, Motion, Physics, Targets};
+pub use self::movement::{Resolution, Trajectory, simulate};
+pub use self::settings::{AngleError, Controller, Motion, Physics, Targets};
 pub use self::world::{Pose, Unstable, engine};

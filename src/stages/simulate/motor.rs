@@ -2,14 +2,14 @@
 //!
 //! Every joint is locked at the beginning. At the end of each epoch, each joint is drawn anew: with probability 1 − p it
 //! moves to a random target, uniform on [−π, π], under a linear controller; otherwise it is locked at its present angle.
-//! The paper leaves two things open: the gains of the controller, and whether the two axes of a universal joint share one
+//! The paper leaves open what the controller is, its gains, and whether the two axes of a universal joint share one
 //! target.
 
 use std::f64::consts::{PI, TAU};
 
 use rand::RngExt;
 
-use super::settings::{AngleError, Motion, Targets};
+use super::settings::{AngleError, Controller, Motion, Targets};
 use super::world::World;
 use crate::numerics::rng::Stream;
 
@@ -43,18 +43,26 @@ impl Motor {
         }
     }
 
-    /// Applies the controller's torque, k_p (target − angle) − k_d · rate, to each axis that moves.
+    /// Drives each axis that moves towards its target for the next step.
     pub fn apply(&self, world: &mut World, motion: &Motion) {
         for (joint, target) in self.targets.iter().enumerate() {
             let Some(target) = target else { continue };
-            let (angles, rates) = (world.angles(joint), world.rates(joint));
-            world.apply_torques(
-                joint,
-                [0, 1].map(|axis| {
-                    let error = angle_error(target[axis], angles[axis], motion.error);
-                    motion.stiffness * error - motion.damping * rates[axis]
-                }),
-            );
+            let angles = world.angles(joint);
+            let errors = [0, 1].map(|axis| angle_error(target[axis], angles[axis], motion.error));
+            match motion.controller {
+                Controller::Torque => {
+                    let rates = world.rates(joint);
+                    let torque = |axis| motion.stiffness * errors[axis] - motion.damping * rates[axis];
+                    world.apply_torques(joint, [0, 1].map(torque));
+                }
+                Controller::Servo => {
+                    world.set_motor(
+                        joint,
+                        errors.map(|error| motion.servo_gain * error),
+                        motion.servo_torque,
+                    );
+                }
+            }
         }
     }
 

@@ -1,5 +1,7 @@
 //! Move an agent at random for a given time and record its trajectory (section 5.1).
 
+use serde::{Deserialize, Serialize};
+
 use super::motor::Motor;
 use super::settings::{Motion, Physics};
 use super::world::{Pose, Unstable, World};
@@ -7,7 +9,7 @@ use crate::numerics::rng::Stream;
 use crate::stages::agent::Agent;
 
 /// The movement of an agent, sampled every Δt.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Trajectory {
     /// Number of parts.
     pub parts: usize,
@@ -17,6 +19,39 @@ pub struct Trajectory {
     pub poses: Vec<Pose>,
     /// (T + 1) × joints, by time: both angles of each joint, rad in [−π, π].
     pub angles: Vec<[f64; 2]>,
+    /// How well the physics step resolved it.
+    pub resolution: Resolution,
+}
+
+/// How well the physics step resolves a movement: the largest value over all steps.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct Resolution {
+    /// Distance by which an anchor comes apart, m.
+    pub anchor_separation: f64,
+    /// Turns that a part makes in a step.
+    pub turn: f64,
+}
+
+impl Resolution {
+    /// Largest separation of an anchor at which a movement counts as resolved, m.
+    pub const SEPARATION: f64 = 0.01;
+    /// Largest turn of a part in a step at which a movement counts as resolved, in turns.
+    pub const TURN: f64 = 0.1;
+
+    /// Whether the step resolves the movement: anchors stay within 1 cm, and no part turns by more than a tenth of a
+    /// turn in a step. A movement that is not resolved is no evidence on what a real body would feel.
+    pub fn is_resolved(&self) -> bool {
+        self.anchor_separation <= Self::SEPARATION && self.turn <= Self::TURN
+    }
+
+    /// The worse of two in each respect.
+    #[must_use]
+    pub fn worse(self, other: Self) -> Self {
+        Self {
+            anchor_separation: self.anchor_separation.max(other.anchor_separation),
+            turn: self.turn.max(other.turn),
+        }
+    }
 }
 
 impl Trajectory {
@@ -49,6 +84,7 @@ pub fn simulate(
         joints,
         poses: Vec::with_capacity((samples + 1) * parts),
         angles: Vec::with_capacity((samples + 1) * joints),
+        resolution: Resolution::default(),
     };
     for step in 0..=samples * steps_per_sample {
         if step % steps_per_sample == 0 {
@@ -64,6 +100,8 @@ pub fn simulate(
         }
         motor.apply(&mut world, motion);
         world.step()?;
+        let now = Resolution { anchor_separation: world.anchor_separation(), turn: world.turn() };
+        trajectory.resolution = trajectory.resolution.worse(now);
     }
     Ok(trajectory)
 }
@@ -134,6 +172,17 @@ mod tests {
             assert!((0..2).all(|axis| (now[axis] - before[axis]).abs() < 0.05), "{now:?} {before:?}");
             assert!(now.iter().any(|angle| angle.abs() > 0.1), "{now:?} moved");
         }
+    }
+
+    /// Without damping nothing takes energy out of a joint that moves, which is no error.
+    #[test]
+    fn a_torque_without_damping_is_admitted() {
+        let gentle = |scene: &mut Scene| {
+            (scene.motion.damping, scene.motion.stiffness, scene.motion.coordination) = (0.0, 0.01, 0.5);
+        };
+        let trajectory = run(gentle).unwrap();
+        assert!(trajectory.angles.iter().flatten().any(|angle| angle.abs() > 0.1));
+        assert!(trajectory.resolution.anchor_separation > 0.0 && trajectory.resolution.turn > 0.0);
     }
 
     #[test]

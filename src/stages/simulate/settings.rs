@@ -24,6 +24,17 @@ pub enum Targets {
     Shared,
 }
 
+/// The "simple linear controller" that moves a joint to its target (section 5.1).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Controller {
+    /// A torque: stiffness × error − damping × rate, applied explicitly at each step.
+    Torque,
+    /// The engine's motor: its velocity is gain × error, and it has a largest torque. The engine solves for it within
+    /// the step, so that it does not become unstable as an explicit torque does.
+    Servo,
+}
+
 /// Coordinated random movement and its controller (section 5.1).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -34,10 +45,16 @@ pub struct Motion {
     pub epoch: usize,
     /// Where a joint that moves goes to.
     pub targets: Targets,
-    /// k_p, N·m/rad. Higher is faster, and less stable at a given step.
+    /// How a joint is moved to its target.
+    pub controller: Controller,
+    /// k_p of the torque, N·m/rad. Higher is faster, and less stable at a given step.
     pub stiffness: f64,
-    /// k_d, N·m·s/rad. Times the step over the part's axial inertia it must stay below about 1.
+    /// k_d of the torque, N·m·s/rad; may be 0. Times the step over the part's axial inertia it must stay below about 1.
     pub damping: f64,
+    /// k of the servo, 1/s: the motor's velocity over the distance to the target.
+    pub servo_gain: f64,
+    /// Largest torque of the servo, N·m.
+    pub servo_torque: f64,
     /// What the controller takes as the distance to the target.
     pub error: AngleError,
 }
@@ -52,7 +69,11 @@ impl Motion {
         check("motion.coordination", p, (0.0..=1.0).contains(&p), "a probability, 0 to 1")?;
         count("motion.epoch", self.epoch)?;
         gain("motion.stiffness", self.stiffness)?;
-        gain("motion.damping", self.damping)
+        gain("motion.damping", self.damping)?;
+        moderate("motion.servo_gain", self.servo_gain)?;
+        let torque = self.servo_torque;
+        let range = "0.000001 to 1000000: a servo without torque moves nothing";
+        check("motion.servo_torque", torque, (1e-6..=1e6).contains(&torque), range)
     }
 }
 

@@ -36,7 +36,7 @@ impl Pose {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error(
     "{event} at step {step} (t = {time:.3} s): the simulation has become unstable; lower motion.stiffness, \
-     motion.damping or physics.step, or enlarge agent.part_radius"
+     motion.damping, motion.servo_gain or physics.step, or enlarge agent.part_radius"
 )]
 pub struct Unstable {
     /// What was seen.
@@ -257,22 +257,45 @@ impl World {
 
     /// Holds a joint at its present angles by a motor of zero velocity and unlimited torque.
     pub fn lock(&mut self, joint: usize) {
-        self.set_motor(joint, f64::INFINITY);
+        self.set_motor(joint, [0.0; 2], f64::INFINITY);
     }
 
     /// Lets a joint turn freely.
     pub fn unlock(&mut self, joint: usize) {
-        self.set_motor(joint, 0.0);
+        self.set_motor(joint, [0.0; 2], 0.0);
     }
 
-    fn set_motor(&mut self, joint: usize, torque: f64) {
-        for (velocity, limit) in [(ode::dParamVel1, ode::dParamFMax1), (ode::dParamVel2, ode::dParamFMax2)] {
+    /// Sets the motors of both axes of a joint: the velocity that each strives for, rad/s, and its largest torque, N·m.
+    pub fn set_motor(&mut self, joint: usize, velocities: [f64; 2], torque: f64) {
+        debug_assert!(velocities.iter().all(|velocity| velocity.is_finite()));
+        let parameters = [(ode::dParamVel1, ode::dParamFMax1), (ode::dParamVel2, ode::dParamFMax2)];
+        for ((velocity, limit), value) in parameters.into_iter().zip(velocities) {
             // SAFETY: the joint is live and universal, and both parameters are its motors'.
             unsafe {
-                ode::dJointSetUniversalParam(self.joints[joint], velocity as i32, 0.0);
+                ode::dJointSetUniversalParam(self.joints[joint], velocity as i32, value);
                 ode::dJointSetUniversalParam(self.joints[joint], limit as i32, torque);
             }
         }
+    }
+
+    /// Largest distance between the two places that a joint's parts have its anchor at, m; 0 if no joint comes apart.
+    pub fn anchor_separation(&self) -> f64 {
+        let separation = |joint: &ode::dJointID| {
+            let (mut first, mut second): (ode::dVector3, ode::dVector3) = ([0.0; 4], [0.0; 4]);
+            // SAFETY: the joint is live and universal, and both vectors hold the three numbers written.
+            unsafe {
+                ode::dJointGetUniversalAnchor(*joint, first.as_mut_ptr());
+                ode::dJointGetUniversalAnchor2(*joint, second.as_mut_ptr());
+            }
+            (0..3).map(|i| (first[i] - second[i]).powi(2)).sum::<f64>().sqrt()
+        };
+        self.joints.iter().map(separation).fold(0.0, f64::max)
+    }
+
+    /// How far the fastest part turns in a step at its present rate, in turns.
+    pub fn turn(&self) -> f64 {
+        let squared = |part: usize| self.velocity(part).1.iter().map(|x| x * x).sum::<f64>();
+        (0..self.bodies.len()).map(squared).fold(0.0, f64::max).sqrt() * self.step / TAU
     }
 }
 

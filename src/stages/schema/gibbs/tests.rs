@@ -5,17 +5,21 @@ use std::collections::BTreeMap;
 
 use nalgebra::DMatrix;
 
-use super::super::settings::Keep;
+use super::super::joints;
+use super::super::latent_tree::Joint;
+use super::super::settings::{EdgeWeight, Keep, Prior, Sampler};
 use super::*;
 use crate::numerics::rng::{Stream, stream};
 use crate::numerics::testing::{ALPHA, chi_squared};
 
 fn settings(components: usize) -> Schema {
     Schema {
+        sampler: Sampler::Equations,
         components,
         concentration: 1.5,
         mean_weight: 0.01,
         extra_freedom: 2.0,
+        prior: Prior::FraleyRaftery,
         scale: 1.0,
         edge_weight: EdgeWeight::Collapsed,
         start: Start::Uniform,
@@ -23,6 +27,7 @@ fn settings(components: usize) -> Schema {
         chains: 100,
         keep: Keep::Last,
         burn_in: 500,
+        authors: Departures::NONE,
     }
 }
 

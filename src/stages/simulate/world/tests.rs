@@ -4,7 +4,7 @@ use rand::RngExt;
 
 use super::super::fixtures::Scene;
 use super::super::motor::Motor;
-use super::super::settings::AngleError;
+use super::super::settings::{AngleError, Controller};
 use super::*;
 use crate::numerics::rng::stream;
 
@@ -62,20 +62,6 @@ fn centre_of_mass(world: &World) -> Vector3 {
     sum.map(|x| x / count as f64)
 }
 
-/// Largest distance between the two bodies' ideas of where a joint's anchor is, m.
-fn anchor_separation(world: &World) -> f64 {
-    let separation = |joint: &ode::dJointID| {
-        let (mut first, mut second): (ode::dVector3, ode::dVector3) = ([0.0; 4], [0.0; 4]);
-        // SAFETY: the joint is live and universal, and both vectors hold the three numbers written.
-        unsafe {
-            ode::dJointGetUniversalAnchor(*joint, first.as_mut_ptr());
-            ode::dJointGetUniversalAnchor2(*joint, second.as_mut_ptr());
-        }
-        norm([0, 1, 2].map(|i| first[i] - second[i]))
-    };
-    world.joints.iter().map(separation).fold(0.0, f64::max)
-}
-
 /// Moves the body at random for `steps` steps; `each` sees the world after every step and may meddle.
 fn move_about(world: &mut World, scene: &Scene, steps: usize, mut each: impl FnMut(&mut World, &Motor)) {
     let mut rng = stream(3, 1, "motion", 0);
@@ -92,8 +78,17 @@ fn move_about(world: &mut World, scene: &Scene, steps: usize, mut each: impl FnM
 
 #[test]
 fn internal_torques_leave_momentum_zero_and_the_centre_of_mass_still() {
+    momentum_is_conserved(Controller::Torque);
+}
+
+#[test]
+fn a_servo_leaves_momentum_zero_and_the_centre_of_mass_still() {
+    momentum_is_conserved(Controller::Servo);
+}
+
+fn momentum_is_conserved(controller: Controller) {
     let (agent, mut scene) = agent_and_scene();
-    scene.motion.coordination = 0.5;
+    (scene.motion.coordination, scene.motion.controller) = (0.5, controller);
     // Largest relative momentum and largest way of the centre of mass, m, over 200 s.
     let measured = |force: f64| {
         let mut world = World::new(&agent, &scene.physics);
@@ -144,8 +139,17 @@ fn angular_momentum_drifts_less_with_a_shorter_step() {
 
 #[test]
 fn locked_joints_stay_locked() {
+    locked_joints_stay_locked_under(Controller::Torque);
+}
+
+#[test]
+fn joints_stay_locked_while_servos_move_the_others() {
+    locked_joints_stay_locked_under(Controller::Servo);
+}
+
+fn locked_joints_stay_locked_under(controller: Controller) {
     let (agent, mut scene) = agent_and_scene();
-    scene.motion.coordination = 0.6;
+    (scene.motion.coordination, scene.motion.controller) = (0.6, controller);
     // Largest change of a locked joint's angle within an epoch, rad, over 200 s.
     let slip = |torque: Option<f64>| {
         let mut world = World::new(&agent, &scene.physics);
@@ -158,7 +162,7 @@ fn locked_joints_stay_locked() {
                     continue;
                 }
                 if let Some(torque) = torque {
-                    world.set_motor(joint, torque);
+                    world.set_motor(joint, [0.0; 2], torque);
                 }
                 let angles = world.angles(joint);
                 let at = *held.get_or_insert(angles);
@@ -199,7 +203,7 @@ fn anchors_stay_together_and_closer_with_a_shorter_step() {
         }
         let mut largest = 0.0_f64;
         let steps = (200.0 / step).round() as usize;
-        move_about(&mut world, &scene, steps, |world, _| largest = largest.max(anchor_separation(world)));
+        move_about(&mut world, &scene, steps, |world, _| largest = largest.max(world.anchor_separation()));
         largest
     };
     // Measured: 0.02 to 0.03 m at a step of 0.01 s, in the fastest turns, where a part makes tens of
@@ -244,6 +248,55 @@ fn a_joint_reaches_its_target_and_turns_the_other_way_from_the_opposite_torque()
     };
     assert!(settled(1.0) < 0.01, "{}", settled(1.0));
     assert!(settled(-1.0) > 0.5, "{}", settled(-1.0));
+}
+
+#[test]
+fn a_servo_reaches_its_target_at_the_rate_of_its_gain_and_no_other() {
+    let (agent, mut scene) = agent_and_scene();
+    scene.motion.controller = Controller::Servo;
+    // The angles of a joint after the given time, s, from a target of both axes, and how far apart its anchor came.
+    let moved = |gain: f64, torque: f64, time: f64| {
+        let mut world = World::new(&agent, &scene.physics);
+        (0..4).filter(|joint| *joint != 1).for_each(|joint| world.lock(joint));
+        let target = [0.8, -0.5];
+        let mut apart = 0.0_f64;
+        for _ in 0..(time / scene.physics.step).round() as usize {
+            let angles = world.angles(1);
+            world.set_motor(1, [0, 1].map(|axis| gain * (target[axis] - angles[axis])), torque);
+            world.step().unwrap();
+            apart = apart.max(world.anchor_separation());
+        }
+        ((0..2).map(|axis| (world.angles(1)[axis] / target[axis] - 1.0).abs()).fold(0.0, f64::max), apart)
+    };
+    let (settled, apart) = moved(10.0, 100.0, 5.0);
+    assert!(settled < 0.01 && apart < 0.01, "{settled} {apart}");
+    // Each step leaves 1 - gain times step of the distance: e⁻¹ of it after 1 / gain seconds, nearly.
+    let (left, _) = moved(1.0, 100.0, 1.0);
+    assert!((left - 0.99_f64.powi(100)).abs() < 0.02, "{left}");
+    // Broken twins: the opposite direction, and a motor too weak to move a part.
+    assert!(moved(-1.0, 100.0, 1.0).0 > 1.0);
+    assert!(moved(10.0, 1e-6, 5.0).0 > 0.5);
+}
+
+#[test]
+fn a_servo_moves_a_body_within_what_the_step_resolves() {
+    let (_, mut scene) = agent_and_scene();
+    (scene.motion.coordination, scene.motion.controller, scene.motion.servo_gain) =
+        (0.5, Controller::Servo, 1.0);
+    let measured = |scene: &Scene| {
+        let mut world = World::new(&scene.agent(), &scene.physics);
+        let mut worst = (0.0_f64, 0.0_f64);
+        move_about(&mut world, scene, 20_000, |world, _| {
+            worst = (worst.0.max(world.anchor_separation()), worst.1.max(world.turn()));
+        });
+        worst
+    };
+    let (separation, turn) = measured(&scene);
+    assert!(separation < 0.01 && turn < 0.1, "{separation} m, {turn} turns");
+    // The broken twin: the default's torque, with which parts turn far in a step.
+    scene.motion.controller = Controller::Torque;
+    let (separation, turn) = measured(&scene);
+    assert!(separation > 0.01 && turn > 0.1, "{separation} m, {turn} turns");
 }
 
 /// z score of the share of locked joints in 20,000 epochs of four joints drawn with `drawn`, if p were

@@ -89,30 +89,34 @@ fn sweep(
     mutant: Mutant,
     rng: &mut Stream,
 ) -> State {
+    let mut tree = LatentTree::new(DVector::zeros(2));
+    tree.joints = state.joints;
     let mut chain = Chain {
         points,
         prior,
         settings,
+        departures: Departures::NONE,
+        components: Components::new(prior, &Departures::NONE).unwrap(),
         model: Model::DpgmmLj,
         labels: state.labels,
         gaussians: state.gaussians,
         log_weights: state.log_weights,
-        joints: state.joints,
+        tree,
         statistics: Vec::new(),
     };
     mutant.draw_labels(&mut chain, rng);
     chain.update_statistics();
-    let missing = (mutant == Mutant::MissingJoint).then(|| chain.joints.pop()).flatten();
+    let missing = (mutant == Mutant::MissingJoint).then(|| chain.tree.joints.pop()).flatten();
     chain.draw_gaussians(rng).unwrap();
-    chain.joints.extend(missing);
+    chain.tree.joints.extend(missing);
     chain.draw_weights(rng);
     let positions = TREE.map(|edge| draw_joint(&chain.gaussians, edge, rng));
-    chain.joints.iter_mut().zip(positions).for_each(|(joint, position)| joint.position = position);
+    chain.tree.joints.iter_mut().zip(positions).for_each(|(joint, position)| joint.position = position);
     State {
         labels: chain.labels,
         gaussians: chain.gaussians,
         log_weights: chain.log_weights,
-        joints: chain.joints,
+        joints: chain.tree.joints,
     }
 }
 

@@ -1,0 +1,102 @@
+//! Share the work of stages 1 to 5 among tasks that need the same movement, pressures, distances or maps.
+
+use serde::Serialize;
+
+use crate::pipeline::{FeltBody, MappedBody, Metric, feel_movement, map_distances, quantise_felt, wander};
+use crate::settings::Settings;
+use crate::stages::simulate::Trajectory;
+
+/// All that the result of each stage depends on.
+pub struct Keys {
+    /// Of the movement.
+    pub movement: String,
+    /// Of the pressures.
+    pub pressures: String,
+    /// Of the distances.
+    pub distances: String,
+    /// Of the body maps.
+    pub maps: String,
+}
+
+impl Keys {
+    /// Of one simulation, mapped in some numbers of dimensions.
+    pub fn of(settings: &Settings, simulation: usize, dims: &[usize]) -> Self {
+        let Settings { agent, skin, motion, physics, sense, quantise, map, experiment, .. } = settings;
+        let movement = text(&(agent, motion, physics, sense.interval, simulation, experiment.seed));
+        let pressures = text(&(&movement, skin, sense));
+        let distances = text(&(&pressures, quantise));
+        let maps = text(&(&distances, map, dims));
+        Self { movement, pressures, distances, maps }
+    }
+}
+
+fn text(key: &impl Serialize) -> String {
+    serde_json::to_string(key).expect("settings are plain data")
+}
+
+/// The last result of a stage, and what it depended on.
+struct Last<T>(Option<(String, T)>);
+
+impl<T> Last<T> {
+    /// The last result if it has this key, or else a new one.
+    fn get(&mut self, key: String, make: impl FnOnce() -> T) -> &T {
+        if self.0.as_ref().is_none_or(|(last, _)| *last != key) {
+            // Two of them at once would be too much memory.
+            self.0 = None;
+            self.0 = Some((key, make()));
+        }
+        &self.0.as_ref().expect("it was made").1
+    }
+}
+
+/// The last results of the stages, for the tasks that come next.
+pub struct Shared {
+    movement: Last<Result<Trajectory, String>>,
+    felt: Last<FeltBody>,
+    metric: Last<Metric>,
+    mapped: Last<Result<MappedBody, String>>,
+    /// Whether other tasks may need them, too.
+    by_several: bool,
+}
+
+impl Shared {
+    /// For one task alone, after which nothing is kept.
+    pub fn alone() -> Self {
+        let (movement, felt, metric, mapped) = (Last(None), Last(None), Last(None), Last(None));
+        Self { movement, felt, metric, mapped, by_several: false }
+    }
+
+    /// For several tasks, one after the other.
+    pub fn by_several() -> Self {
+        Self { by_several: true, ..Self::alone() }
+    }
+
+    /// Stages 1 to 5. Calls `tick` once for each sample of a movement that is simulated.
+    ///
+    /// # Errors
+    /// Why a stage failed.
+    pub fn map(
+        &mut self,
+        settings: &Settings,
+        simulation: usize,
+        dims: &[usize],
+        tick: &dyn Fn(),
+    ) -> Result<MappedBody, String> {
+        let keys = Keys::of(settings, simulation, dims);
+        let movement = self
+            .movement
+            .get(keys.movement, || wander(settings, simulation, tick).map_err(|error| error.to_string()));
+        let trajectory = movement.as_ref().map_err(String::clone)?;
+        let felt = self.felt.get(keys.pressures, || feel_movement(trajectory, settings));
+        let metric = self.metric.get(keys.distances, || quantise_felt(felt, &settings.quantise));
+        let mapped = self.mapped.get(keys.maps, || {
+            map_distances(felt, metric, settings, simulation, dims).map_err(|error| error.to_string())
+        });
+        let mapped = mapped.clone();
+        if !self.by_several {
+            // A third of a gigabyte that nobody needs any more.
+            *self = Self::alone();
+        }
+        mapped
+    }
+}

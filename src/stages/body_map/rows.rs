@@ -1,0 +1,28 @@
+//! Take the rows of a matrix of distances as descriptions of the sensors, and compute the distances between them.
+
+use super::coordinates::BodyMap;
+use super::smacof::euclidean;
+use crate::stages::distance::Distances;
+
+/// Euclidean distances between the rows of a matrix of distances, M × M, in its unit: two sensors are near to each other
+/// where they are at like distances from all sensors.
+///
+/// A program that hands a matrix of distances to scikit-learn's `MDS` without `dissimilarity="precomputed"` maps these.
+pub fn between_rows(distances: &Distances) -> Distances {
+    let sensors = distances.sensors;
+    let rows = BodyMap { dims: sensors, coordinates: distances.values.clone() };
+    Distances { sensors, values: euclidean(&rows) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_are_compared_entry_by_entry() {
+        let values = vec![0.0, 3.0, 4.0, 3.0, 0.0, 0.0, 4.0, 0.0, 0.0];
+        let found = between_rows(&Distances { sensors: 3, values });
+        let expected = [0.0, 34_f64.sqrt(), 41_f64.sqrt(), 34_f64.sqrt(), 0.0, 1.0, 41_f64.sqrt(), 1.0, 0.0];
+        assert!(found.values.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-12), "{found:?}");
+    }
+}

@@ -1,0 +1,116 @@
+//! Draw (μ, Σ) of every component given its sensors and joints (equations 16 and 17).
+
+use nalgebra::{DMatrix, DVector};
+use rand::Rng;
+
+use super::departures::{Departures, EmptyComponents, MeanCovariance};
+use super::error::InferenceError;
+use super::latent_tree::{Joint, LatentTree};
+use crate::stages::mixture::{Gaussian, MeanSpread, NormalInverseWishart, Rounding, SufficientStatistics};
+
+/// The conditional distributions of the components.
+#[derive(Debug)]
+pub struct Components<'a> {
+    prior: &'a NormalInverseWishart,
+    /// What a component without sensors is drawn from, if that is not the prior.
+    empty: Option<NormalInverseWishart>,
+    spread: MeanSpread,
+    joints_in_scatter: bool,
+    stale_joints: bool,
+}
+
+impl<'a> Components<'a> {
+    /// Under a prior, and with the departures from the equations that are asked for.
+    ///
+    /// # Errors
+    /// [`InferenceError::Rounding`] if the inverse of the prior's scale is not positive definite in floating point.
+    pub fn new(prior: &'a NormalInverseWishart, departures: &Departures) -> Result<Self, InferenceError> {
+        let empty = match departures.empty_components {
+            EmptyComponents::Prior => None,
+            EmptyComponents::Inverse => Some(prior.with_inverse_scale().ok_or(Rounding)?),
+        };
+        let spread = match departures.mean_covariance {
+            MeanCovariance::Component => MeanSpread::Component,
+            MeanCovariance::InverseScale => MeanSpread::InverseScale,
+        };
+        let (joints_in_scatter, stale_joints) = (departures.joints_in_scatter, departures.stale_joints);
+        Ok(Self { prior, empty, spread, joints_in_scatter, stale_joints })
+    }
+
+    /// Draws all components.
+    ///
+    /// # Errors
+    /// [`InferenceError::Rounding`] if a scale is not positive definite in floating point.
+    pub fn draw(
+        &self,
+        statistics: &[SufficientStatistics],
+        tree: &LatentTree,
+        rng: &mut impl Rng,
+    ) -> Result<Vec<Gaussian>, InferenceError> {
+        let posteriors = self.posteriors(statistics, tree);
+        posteriors.map(|posterior| Ok(posterior?.draw_spread(self.spread, rng))).collect()
+    }
+
+    /// What each component is drawn from, given the sufficient statistics of its sensors.
+    pub fn posteriors<'b>(
+        &'b self,
+        statistics: &'b [SufficientStatistics],
+        tree: &'b LatentTree,
+    ) -> impl Iterator<Item = Result<NormalInverseWishart, Rounding>> + 'b {
+        let joints = self.joints_of(statistics, tree);
+        statistics.iter().zip(joints).map(|(sensors, joints)| match &self.empty {
+            Some(empty) if sensors.count() == 0.0 => Ok(empty.clone()),
+            _ if self.joints_in_scatter || joints.is_empty() => {
+                let mut data = sensors.clone();
+                joints.iter().for_each(|joint| data.add(joint.as_slice()));
+                self.prior.posterior(&data)
+            }
+            _ => without_scatter(self.prior, sensors, &joints),
+        })
+    }
+
+    /// The joints that each component takes for data.
+    fn joints_of<'b>(
+        &self,
+        statistics: &[SufficientStatistics],
+        tree: &'b LatentTree,
+    ) -> Vec<Vec<&'b DVector<f64>>> {
+        let mut joints = vec![Vec::new(); statistics.len()];
+        let occupied = |k: usize| statistics[k].count() > 0.0;
+        for Joint { edge, position } in tree.joints.iter().chain(&tree.stale) {
+            // A joint of components that were active when it was drawn.
+            if !self.stale_joints || occupied(edge.child) {
+                joints[edge.child].push(position);
+                if !self.stale_joints || occupied(edge.parent) {
+                    joints[edge.parent].push(position);
+                }
+            }
+        }
+        joints
+    }
+}
+
+/// The posterior in which joints count and move the mean, but do not enter the scatter about it.
+///
+/// With N sensors and joints together of mean x̄, n sensors of mean x̄ₛ: Ψ = Ψ₀ + Σ (x − x̄ₛ)(x − x̄ₛ)ᵀ + n (x̄ₛ − x̄)(x̄ₛ − x̄)ᵀ
+/// + k₀ N / (k₀ + N) (x̄ − m₀)(x̄ − m₀)ᵀ, a sum of what is never negative.
+fn without_scatter(
+    prior: &NormalInverseWishart,
+    sensors: &SufficientStatistics,
+    joints: &[&DVector<f64>],
+) -> Result<NormalInverseWishart, Rounding> {
+    let (count, own, before) = (sensors.count(), sensors.mean(), prior.mean());
+    let total = count + joints.len() as f64;
+    let sum = joints.iter().fold(&own * count, |sum, joint| sum + *joint);
+    let (mean, weight) = (sum / total, prior.mean_weight());
+    let mut scale: DMatrix<f64> = prior.scale();
+    if count > 0.0 {
+        scale += sensors.scatter();
+    }
+    let (apart, pulled) = (own - &mean, &mean - &before);
+    scale.ger(count, &apart, &apart, 1.0);
+    scale.ger(weight * total / (weight + total), &pulled, &pulled, 1.0);
+    let centre = (before * weight + mean * total) / (weight + total);
+    let freedom = prior.degrees_of_freedom + total;
+    NormalInverseWishart::new(centre, weight + total, scale, freedom).ok_or(Rounding)
+}
