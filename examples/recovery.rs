@@ -12,7 +12,7 @@ use bodyschema::internals::statistics::mean;
 use bodyschema::numerics::rng::stream;
 use bodyschema::settings::Settings;
 use bodyschema::stages::evaluate::score;
-use bodyschema::stages::schema::EdgeWeight;
+use bodyschema::stages::schema::{EdgeWeight, Schema};
 use bodyschema::stages::schema::{Model, infer};
 use plotters::prelude::*;
 
@@ -40,8 +40,14 @@ struct Row {
     identifiable: f64,
 }
 
+/// The sampler of the paper's equations.
+fn equations() -> Schema {
+    let text = include_str!("../reproduce/equations.toml");
+    Settings::paper().with(text, "reproduce/equations.toml").expect("the repository's settings").schema
+}
+
 fn condition(dimension: usize, separation: f64) -> Result<Row, Box<dyn Error>> {
-    let mut schema = Settings::paper().schema;
+    let mut schema = equations();
     (schema.chains, schema.sweeps) = (8, 300);
     schema.edge_weight = EdgeWeight::Pairwise;
     let (mut partitions, mut trees) = (Vec::new(), Vec::new());

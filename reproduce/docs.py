@@ -31,6 +31,8 @@ CLAIMS = [
     ("exp2", "best-coordination"),
     ("exp2", "tree-random-movement"),
 ]
+# Stands for the headline of the other reading.
+OTHER = "other-reading"
 VERDICTS = ["reproduced", "not reproduced", "not testable"]
 UNITS = ["kg/m^3", "N m s/rad", "N m/rad", "m", "s"]
 
@@ -85,13 +87,16 @@ def manifest(folder):
 
 
 def claims(results):
-    """README.md: five claims, and how many of all are reproduced."""
+    """README.md: five claims, the headline by both readings, and how many of all are reproduced."""
     experiments = {name: read_claims(results / name) for name in ["exp1", "exp2"]}
+    other = {name: claims.pop(OTHER, None) for name, claims in experiments.items()}
+    del other["exp2"]  # the same bodies at the same p and d as in experiment 1
     columns = ["verdict", "claim", "published", "reproduced", "95 % interval", "n", "accepted"]
     lines = [row(columns), f"|{'---|' * len(columns)}"]
     for name, id in CLAIMS:
-        claim = experiments[name][id]
-        lines.append(row([f"**{claim['verdict']}**"] + [claim[column] for column in columns[1:]]))
+        for claim in [experiments[name][id], other.pop(name, None)]:
+            if claim:
+                lines.append(row([f"**{claim['verdict']}**"] + [claim[column] for column in columns[1:]]))
     # A claim of both experiments counts once.
     verdicts = [claim["verdict"] for claim in (experiments["exp1"] | experiments["exp2"]).values()]
     counts = ", ".join(f"{verdicts.count(verdict)} {verdict}" for verdict in VERDICTS)
@@ -104,13 +109,18 @@ def row(cells):
 
 
 def read_claims(folder):
-    """The cells of claims.md by the claim's id, without the rows of the extension."""
+    """The cells of claims.md by the claim's id, without the rows of the extension; the other reading's headline is OTHER."""
     table = [line.strip("| ").split(" | ") for line in (folder / "claims.md").read_text().splitlines() if "|" in line[:1]]
     header, rows = table[0], table[2:]
-    by_statement = {cells["claim"]: cells for cells in (dict(zip(header, row)) for row in rows)}
     with open(folder / "claims.csv", newline="") as file:
-        all_draws = [claim for claim in csv.DictReader(file) if claim["counting"] == "all-draws"]
-    return {claim["id"]: by_statement[claim["statement"]] for claim in all_draws}
+        claims = list(csv.DictReader(file))
+    assert len(claims) == len(rows), f"{folder}: claims.csv and claims.md do not agree"
+    reading = claims[0].get("reading")
+    return {
+        claim["id"] if claim.get("reading") == reading else OTHER: dict(zip(header, row))
+        for claim, row in zip(claims, rows)
+        if claim["counting"] == "all-draws"
+    }
 
 
 def source(results):
@@ -147,7 +157,8 @@ def experiment(folder, figure):
 
 
 def search(results):
-    names = ["search.md", "scores.csv", "credits.csv", "best.toml"]
+    names = ["search.md", "scores.csv", "credits.csv", "next.toml"]
+    names += [name for name in ["best.toml"] if (results / "search" / name).exists()]
     copy([results / "search" / name for name in names], SHOWN / "search")
 
 
@@ -192,7 +203,7 @@ def deviations():
         if any(settings[key]["ours"] for key in part["settings"]):
             lines.append(
                 line(
-                    f"[{part['title']}](docs/sensitivity.md#{part['name']})",
+                    f"[{part['title']}](docs/sensitivity.md{anchor(part['name'])})",
                     part["settings"],
                     part["paper"],
                     part["why"],
@@ -211,12 +222,18 @@ def deviations():
     between_marks(ROOT / "DEVIATIONS.md", "settings", "\n".join(lines))
 
 
+def anchor(part):
+    """The place of a part in the study's page, if the study that is shown has it."""
+    page = (ROOT / "docs" / "sensitivity.md").read_text()
+    return f"#{part}" if f'id="{part}"' in page else ""
+
+
 def read_settings():
     """Values of paper.toml as they are written there, and whose they are."""
     text = (ROOT / "reproduce" / "paper.toml").read_text()
     settings, section, key = {}, None, None
     for row in text.splitlines():
-        if header := re.fullmatch(r"\[(\w+)\]", row):
+        if header := re.fullmatch(r"\[([\w.]+)\]", row):
             section = header[1]
         elif entry := re.fullmatch(r"(\w+) = (.+?)\s+# (.+)", row):
             key = f"{section}.{entry[1]}"
@@ -224,7 +241,7 @@ def read_settings():
         elif (more := re.fullmatch(r"\s+# (.+)", row)) and key:
             settings[key]["comment"] += f" {more[1]}"
     parsed = tomllib.loads(text)
-    keys = {f"{section}.{key}" for section, keys in parsed.items() for key in keys}
+    keys = set(flat(parsed))
     assert keys == set(settings), f"paper.toml: no comment beside {keys - set(settings)}"
     for setting in settings.values():
         comment = setting["comment"]
@@ -234,12 +251,21 @@ def read_settings():
     return settings
 
 
+def flat(table):
+    """Dotted names of all settings of a table."""
+    for name, value in table.items():
+        if isinstance(value, dict):
+            yield from (f"{name}.{key}" for key in flat(value))
+        else:
+            yield name
+
+
 def line(title, keys, paper, reason, settings, searched):
     names = ", ".join(f"`{key}`" for key in keys)
     ours = ", ".join(settings[key]["value"] + settings[key]["unit"] for key in keys)
     sources = {}
     for key in keys:
-        sources.setdefault(source_of(key, settings[key], searched), []).append(key.split(".")[1])
+        sources.setdefault(source_of(key, settings[key], searched), []).append(key.split(".")[-1])
     if len(sources) == 1:
         origin = next(iter(sources))
     else:
@@ -250,6 +276,8 @@ def line(title, keys, paper, reason, settings, searched):
 def source_of(key, setting, searched):
     if stated := re.match(r"stated (\([\d.]+\))(?!.*ours:)", setting["comment"]):
         return f"paper {stated[1]}"
+    if key.startswith("schema.authors."):
+        return "[authors' code](docs/authors-code.md)"
     if key in searched:
         return "[search](docs/search.md)"
     if cited := re.search(r"[A-Z]\w+ and [A-Z]\w+ \(\d{4}\)", setting["comment"]):

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# Installs what the tests need and runs them. Arguments go to `cargo test`.
+# Installs what the tests need and runs them. Arguments go to `cargo test`. The build is that of the experiments, so that
+# nothing is compiled twice.
 set -euo pipefail
 root=$(CDPATH= cd -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")/.." && pwd)
 
 "$root/reproduce/install.sh"
-cargo test --locked --workspace --manifest-path "$root/Cargo.toml" "$@"
+cargo test --release --locked --workspace --manifest-path "$root/Cargo.toml" "$@"

@@ -14,7 +14,7 @@ for experiment in exp1 exp2; do
     reference=$root/reproduce/reference/$experiment
     out=$root/results/verify/$experiment
     cargo run --quiet "${manifest[@]}" -- infer "$reference/body-map.npy" \
-        --labels "$reference/labels.csv" --tree "$reference/tree.csv" --out "$out"
+        --settings "$root/reproduce/equations.toml" --labels "$reference/labels.csv" --tree "$reference/tree.csv" --out "$out"
     cargo run --quiet "${manifest[@]}" -- verify "$out" --against "$reference/schema" || status=$?
 done
 exit "$status"

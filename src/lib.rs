@@ -65,4 +65,12 @@ pub mod internals {
     pub use crate::analysis::statistics;
     pub use crate::experiments::verify;
     pub use crate::report::{page, plot};
+
+    /// Steps of a sweep, which are compared with a second reading one by one.
+    pub mod sampler {
+        pub use crate::stages::mixture::assignments::draw_labels;
+        pub use crate::stages::schema::components::Components;
+        pub use crate::stages::schema::joints::{cost, draw_between};
+        pub use crate::stages::schema::latent_tree::{Joint, LatentTree, Update, tree};
+    }
 }

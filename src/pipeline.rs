@@ -24,6 +24,8 @@ pub struct Body {
     pub truth: Truth,
     /// The body maps; `None` where no sensor differs from another, as when nothing ever moves (p = 1).
     pub maps: Option<BodyMaps>,
+    /// How well the physics step resolved its movement.
+    pub resolution: Resolution,
 }
 
 /// What stages 1 to 5 make of one simulation.
@@ -228,7 +230,8 @@ pub fn map_distances(
         eigenvalues: scaling.eigenvalues,
         improvements,
     };
-    Ok(MappedBody { body: Body { truth: felt.truth.clone(), maps }, distances, facts })
+    let body = Body { truth: felt.truth.clone(), maps, resolution: felt.resolution };
+    Ok(MappedBody { body, distances, facts })
 }
 
 /// The stream of a random start of a body map of d dimensions.
@@ -243,6 +246,8 @@ pub struct Inference {
     pub records: Vec<Record>,
     /// The draw of highest log posterior.
     pub best: Draw,
+    /// How well the physics step resolved the movement of the body.
+    pub resolution: Resolution,
 }
 
 /// Stages 6 and 7 for one condition. Calls `tick` once for each chain.
@@ -285,7 +290,8 @@ pub fn infer_and_score(
             tree_correct: score.tree_correct,
         }
     };
-    Ok(Inference { records: draws.iter().map(record).collect(), best: best(&draws).clone() })
+    let records = draws.iter().map(record).collect();
+    Ok(Inference { records, best: best(&draws).clone(), resolution: body.resolution })
 }
 
 /// Ward's method, k-means and GMM with each number of clusters on one body map (figure 8a).

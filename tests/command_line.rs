@@ -162,8 +162,8 @@ fn an_experiment_is_the_same_on_any_number_of_threads_and_complete() {
     let out = folder.path().join("jobs-1");
     assert_eq!(
         header(&out.join("claims.csv")),
-        "id,counting,figure,place,statement,unit,published,wording,value,n,low,high,simulations,lowest,highest,\
-         accepted_low,accepted_high,verdict,found"
+        "id,counting,reading,figure,place,statement,unit,published,wording,value,n,low,high,simulations,lowest,highest,\
+         accepted_low,accepted_high,verdict,found,bodies,bodies_share,bodies_low,bodies_high,bodies_together,one_body"
     );
     let claims = rows(&out.join("claims.csv"));
     let first = ["id", "counting", "unit", "published", "wording"].map(|column| claims[0][column].as_str());

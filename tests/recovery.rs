@@ -11,10 +11,16 @@ use bodyschema::stages::schema::{EdgeWeight, Schema};
 use bodyschema::stages::schema::{Model, infer};
 use bodyschema::stages::tree::Truth;
 
+/// The sampler of the paper's equations.
+fn equations() -> Schema {
+    let text = include_str!("../reproduce/equations.toml");
+    Settings::paper().with(text, "reproduce/equations.toml").expect("the repository's settings").schema
+}
+
 /// (draws that find the parts and the tree, draws that find the parts, all draws) over the identifiable of
 /// 12 bodies; `judge` may replace the truth by which a body is judged.
 fn recovered(dims: usize, separation: f64, judge: impl Fn(Truth, usize) -> Truth) -> (usize, usize, usize) {
-    let mut schema = Settings::paper().schema;
+    let mut schema = equations();
     (schema.chains, schema.sweeps) = (6, 150);
     // The joints of equation 22; what the other weights do is tested below.
     schema.edge_weight = EdgeWeight::Pairwise;
@@ -49,7 +55,7 @@ fn every_edge_weight_gives_a_tree_over_the_parts_and_the_collapsed_one_finds_it_
     let at = (0..12).find(identifiable).expect("some body is identifiable");
     let body = synthetic::body(14, 3.0, &mut stream(1, 1, "synthetic", at));
     for edge_weight in [EdgeWeight::Literal, EdgeWeight::Pairwise, EdgeWeight::Collapsed] {
-        let schema = Schema { chains: 6, sweeps: 150, edge_weight, ..Settings::paper().schema };
+        let schema = Schema { chains: 6, sweeps: 150, edge_weight, ..equations() };
         let draws = infer(&body.map, Model::DpgmmLj, &schema, 1, 1, &|| ()).unwrap();
         let mut right = 0;
         for draw in &draws {

@@ -243,7 +243,7 @@ fn a_value_outside_its_range_is_refused_by_its_name() {
 #[test]
 fn mixtures_of_extreme_priors_on_nearly_flat_maps_end_in_samples_or_in_an_error() {
     let (mut drawn, mut lost) = (0, 0);
-    for case in 0..600 {
+    for case in 0..900 {
         let rng = &mut stream(1, 1, "flat maps", case);
         let mut schema = Settings::paper().schema;
         (schema.chains, schema.sweeps, schema.components) = (1, 10, *[2, 10, 300].choose(rng).unwrap());

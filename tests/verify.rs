@@ -179,7 +179,9 @@ fn the_reference_body_maps_give_the_reference_draws() {
         let reference = format!("{}/reproduce/reference/{experiment}", env!("CARGO_MANIFEST_DIR"));
         let out = folder.path().join(experiment).display().to_string();
         let arguments = format!(
-            "infer {reference}/body-map.npy --labels {reference}/labels.csv --tree {reference}/tree.csv --out {out}"
+            "infer {reference}/body-map.npy --labels {reference}/labels.csv --tree {reference}/tree.csv --out {out} \
+             --settings {}/reproduce/equations.toml",
+            env!("CARGO_MANIFEST_DIR")
         );
         let mut command = Command::new(env!("CARGO_BIN_EXE_bodyschema"));
         let inferred = command.args(arguments.split(' ')).env("GLIBC_TUNABLES", processor).output().unwrap();

@@ -1,6 +1,7 @@
-"""Distances -> the time to a body map, in seconds, of NumPy's full and SciPy's partial decomposition.
+"""Distances -> the time to a body map, in seconds, of NumPy's full and SciPy's partial decomposition, and of
+scikit-learn's majorisation.
 
-Run: pip install numpy==2.4.6 scipy==1.17.1
+Run: pip install numpy==2.4.6 scipy==1.17.1 scikit-learn==1.9.1
      python benches/peers/map.py [sensors]
 """
 
@@ -44,9 +45,21 @@ def eigsh(distances):
     return time.perf_counter() - start
 
 
+def smacof(distances):
+    """300 steps of majorisation from one random start, in 14 dimensions."""
+    import sklearn.manifold
+
+    start = time.perf_counter()
+    sklearn.manifold.smacof(
+        distances, n_components=14, n_init=1, max_iter=300, eps=0, random_state=1, normalized_stress=False, init=None
+    )
+    return time.perf_counter() - start
+
+
 if __name__ == "__main__":
     sensors = int(sys.argv[1]) if len(sys.argv) > 1 else 840
     matrix = distances(sensors)
     for peer in [eigh, eigsh] if sensors <= 2_000 else [eigsh]:
         times = [peer(matrix) for _ in range(11 if sensors <= 2_000 else 1)]
         print(f"{peer.__name__}: {1e3 * statistics.median(times):.1f} ms ({sensors} sensors to {DIMS} dimensions)")
+    print(f"smacof: {1e3 * smacof(matrix):.1f} ms (300 steps, {sensors} sensors to 14 dimensions)")

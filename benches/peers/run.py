@@ -63,6 +63,11 @@ def map_840(_, round):
     return ours, peer("map", "map.statistics.median(map.eigh(m) for m in [map.distances(840)] * 11)")
 
 
+def majorisation(_, round):
+    ours = seconds(bench("map", round), r"300 steps.*: ([\d.]+) ms", 1e-3)
+    return ours, peer("map", "map.smacof(map.distances(840))")
+
+
 def schema(call):
     def run(_, round):
         ours = seconds(bench("schema", round), r"dpgmm-lj: ([\d.]+) ms", 1e-3)
@@ -77,6 +82,7 @@ STAGES = [
     ("distance", "840 sensors, T = 100,000, N = 4", "NumPy one-hot product", distance(4)),
     ("distance", "the same, N = 8", "NumPy one-hot product", distance(8)),
     ("map", "840 sensors to 15 dimensions", "numpy.linalg.eigh", map_840),
+    ("map", "840 sensors to 14 dimensions, 300 steps of majorisation", "scikit-learn's smacof", majorisation),
     ("schema", "a sweep of DPGMM-LJ, n = 840, d = 14, K = 10, one core", "NumPy and SciPy", schema("schema.numpy_seconds()")),
     ("schema", "the same", "an iteration of scikit-learn's BayesianGaussianMixture", schema("schema.sklearn_seconds()")),
 ]

@@ -6,8 +6,10 @@
 use serde::{Deserialize, Serialize};
 
 use super::measure::{Evidence, measure};
+use super::one_body::SingleBodies;
 use super::published::{Claim, Experiment, Measure, claims};
 use super::statistics::Estimate;
+use crate::stages::schema::Sampler;
 
 /// What the run says of a claim.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -47,13 +49,23 @@ pub struct Judged {
     pub verdict: Verdict,
     /// The same of the draws of highest log posterior, where the claim counts draws: an extension.
     pub best: Option<(Estimate, String)>,
+    /// The reading of the paper that the draws follow.
+    pub reading: Sampler,
+    /// How often single bodies show it, where that was asked for.
+    pub single_bodies: Option<SingleBodies>,
 }
 
 /// Judges the claims of one experiment.
 pub fn judge(experiment: Experiment, evidence: &Evidence) -> Vec<Judged> {
-    let best = Evidence { conditions: evidence.conditions.best(), baselines: Vec::new() };
+    let reading = evidence.reading;
+    let best = Evidence { conditions: evidence.conditions.best(), baselines: Vec::new(), reading };
     let claims = claims().into_iter().filter(|claim| claim.experiments.contains(&experiment));
     claims.map(|claim| judge_one(claim, evidence, &best)).collect()
+}
+
+/// The headline: the first claim, whose rate the paper gives.
+pub fn headline(experiment: Experiment, evidence: &Evidence) -> Judged {
+    judge(experiment, evidence).swap_remove(0)
 }
 
 fn judge_one(claim: Claim, evidence: &Evidence, best: &Evidence) -> Judged {
@@ -62,7 +74,7 @@ fn judge_one(claim: Claim, evidence: &Evidence, best: &Evidence) -> Judged {
         let (estimate, place, _) = worst(&claim, &measure(&claim.measure, best));
         (estimate, place)
     });
-    Judged { claim, reproduced, place, verdict, best }
+    Judged { claim, reproduced, place, verdict, best, reading: evidence.reading, single_bodies: None }
 }
 
 /// Of all values that a claim is about, the one that lies farthest towards the outside of its range.

@@ -23,6 +23,13 @@ impl Conditions {
         Self { records, simulations, resamples }
     }
 
+    /// The draws of one simulation alone, from 1, as if there were no other.
+    pub fn of_simulation(&self, simulation: usize) -> Self {
+        let own = self.records.iter().filter(|record| record.simulation == simulation);
+        let records = own.map(|record| Record { simulation: 1, ..*record }).collect();
+        Self { records, simulations: 1, resamples: Resamples::new(1, &mut stream(0, 0, "bootstrap", 0)) }
+    }
+
     /// An extension of the paper's way of counting: of each condition and simulation only the draw of
     /// highest log posterior, whose tree counts whether or not its parts are right.
     pub fn best(&self) -> Self {

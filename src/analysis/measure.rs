@@ -7,7 +7,7 @@ use super::published::{At, Measure};
 use super::statistics::{Estimate, kruskal_wallis, mann_whitney, mean, quantile, smallest_adjusted};
 use crate::pipeline::{Condition, Record};
 use crate::stages::baselines::Clustering;
-use crate::stages::schema::Model;
+use crate::stages::schema::{Model, Sampler};
 
 /// What a run offers to judge claims by.
 #[derive(Debug, Clone)]
@@ -16,6 +16,8 @@ pub struct Evidence {
     pub conditions: Conditions,
     /// The clusterings that are told the number of clusters.
     pub baselines: Vec<BaselineEstimate>,
+    /// The reading of the paper that the draws follow.
+    pub reading: Sampler,
 }
 
 /// A value, and what tells its place from those of the claim's other values.
@@ -23,7 +25,7 @@ type Placed = (String, Estimate);
 
 /// All values that a claim is about, each with its place.
 pub fn measure(measure: &Measure, evidence: &Evidence) -> Vec<Placed> {
-    let Evidence { conditions, baselines } = evidence;
+    let Evidence { conditions, baselines, .. } = evidence;
     let each = |at: &At, estimate: &dyn Fn(Condition) -> Estimate| -> Vec<Placed> {
         let places = places(at, conditions).into_iter();
         places.map(|(place, condition)| (place, estimate(condition))).collect()

@@ -4,5 +4,7 @@ pub mod cells;
 pub mod claims;
 pub mod conditions;
 pub mod measure;
+pub mod one_body;
 pub mod published;
+pub mod single_bodies;
 pub mod statistics;

@@ -4,6 +4,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::stages::schema::Model;
 
+/// Short name of the claim that the paper is cited for.
+pub const HEADLINE: &str = "tree-accuracy";
+
 const PUBLISHED: &str = include_str!("../../reproduce/published.toml");
 
 /// An experiment of the paper.

@@ -115,11 +115,12 @@ impl Batch<'_> {
     /// If a task fails, or a file cannot be written.
     pub fn one_by_one(&self, tasks: &[Task]) -> Result<Vec<Found>, ExperimentError> {
         let mut all = Vec::with_capacity(tasks.len());
+        let mut shared = Shared::default();
         for (at, task) in tasks.iter().enumerate() {
             self.bar.set_message(task.name.clone());
             let progress = TaskProgress { bar: self.bar, done: AtomicU64::new(0) };
             // Not kept among the checkpoints: what failed may succeed on a machine or with a library that differs.
-            let mut found = match self.try_to_finish(task, &mut Shared::alone(), &progress) {
+            let mut found = match self.try_to_finish(task, &mut shared, &progress) {
                 Ok(found) => found,
                 Err(Stop::Failed(reason)) => return Err(ExperimentError::Stage(reason)),
                 Err(Stop::File(error)) => return Err(error.into()),
@@ -145,7 +146,7 @@ impl Batch<'_> {
         let next = AtomicUsize::new(0);
         let work = || {
             while let Some(movement) = movements.get(next.fetch_add(1, Ordering::Relaxed)) {
-                let mut shared = Shared::by_several();
+                let mut shared = Shared::default();
                 for &at in movement {
                     match self.finish(&tasks[at], &mut shared) {
                         Ok(outcome) => *outcomes[at].lock().expect("no worker panics") = Some(outcome),
@@ -210,6 +211,7 @@ impl Batch<'_> {
         }
         for &condition in &task.conditions {
             let inference = self.infer(task, condition, &mut body, shared, progress)?;
+            found.resolution = found.resolution.worse(inference.resolution);
             found.records.extend(inference.records);
             found.best.push(inference.best);
         }
@@ -217,10 +219,6 @@ impl Batch<'_> {
             let body = body.as_ref().expect("a body that is clustered is kept");
             found.baselines.extend(self.cluster(task, body, dimension)?);
         }
-        found.resolution = match &found.kept {
-            Some(kept) => kept.facts.resolution,
-            None => self.checkpoints.recall(&format!("{}/resolution", task.name)).unwrap_or_default(),
-        };
         found.body = body.filter(|_| found.kept.is_some());
         Ok(found)
     }
@@ -241,19 +239,12 @@ impl Batch<'_> {
         }
         let body = match body {
             Some(body) => body,
-            none => none.insert(self.map_and_note(task, shared, progress)?),
+            none => none.insert(map(task, shared, progress)?.body),
         };
         let tick = || progress.add(1);
         let found = infer_and_score(body, condition, &task.settings, task.simulation, &tick)?;
         self.checkpoints.keep(&name, &found)?;
         Ok(found)
-    }
-
-    /// The body maps of a task whose files are not kept; keeps how well its movement was resolved.
-    fn map_and_note(&self, task: &Task, shared: &mut Shared, progress: &TaskProgress) -> Result<Body, Stop> {
-        let mapped = map(task, shared, progress)?;
-        self.checkpoints.keep(&format!("{}/resolution", task.name), &mapped.facts.resolution)?;
-        Ok(mapped.body)
     }
 
     /// The clusterings on one body map.

@@ -79,7 +79,8 @@ impl BodyFiles<'_> {
         let maps = BodyMaps::of(settings.map.method, maps?);
         let (labels, tree) = (folder.join("labels.csv"), folder.join("tree.csv"));
         let truth = tables::read_truth(&labels, &tree, settings.sensors()).ok()?;
-        Some((Body { truth, maps }, self.kept(finished)))
+        let resolution = finished.facts.resolution;
+        Some((Body { truth, maps, resolution }, self.kept(finished)))
     }
 
     fn kept(&self, MappedFiles { facts, files }: MappedFiles) -> Kept {

@@ -37,6 +37,12 @@ fn text(key: &impl Serialize) -> String {
 /// The last result of a stage, and what it depended on.
 struct Last<T>(Option<(String, T)>);
 
+impl<T> Default for Last<T> {
+    fn default() -> Self {
+        Self(None)
+    }
+}
+
 impl<T> Last<T> {
     /// The last result if it has this key, or else a new one.
     fn get(&mut self, key: String, make: impl FnOnce() -> T) -> &T {
@@ -49,28 +55,16 @@ impl<T> Last<T> {
     }
 }
 
-/// The last results of the stages, for the tasks that come next.
+/// The last results of the stages, for the tasks that come next: half a gigabyte at full size.
+#[derive(Default)]
 pub struct Shared {
     movement: Last<Result<Trajectory, String>>,
     felt: Last<FeltBody>,
     metric: Last<Metric>,
     mapped: Last<Result<MappedBody, String>>,
-    /// Whether other tasks may need them, too.
-    by_several: bool,
 }
 
 impl Shared {
-    /// For one task alone, after which nothing is kept.
-    pub fn alone() -> Self {
-        let (movement, felt, metric, mapped) = (Last(None), Last(None), Last(None), Last(None));
-        Self { movement, felt, metric, mapped, by_several: false }
-    }
-
-    /// For several tasks, one after the other.
-    pub fn by_several() -> Self {
-        Self { by_several: true, ..Self::alone() }
-    }
-
     /// Stages 1 to 5. Calls `tick` once for each sample of a movement that is simulated.
     ///
     /// # Errors
@@ -92,11 +86,6 @@ impl Shared {
         let mapped = self.mapped.get(keys.maps, || {
             map_distances(felt, metric, settings, simulation, dims).map_err(|error| error.to_string())
         });
-        let mapped = mapped.clone();
-        if !self.by_several {
-            // A third of a gigabyte that nobody needs any more.
-            *self = Self::alone();
-        }
-        mapped
+        mapped.clone()
     }
 }

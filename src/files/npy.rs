@@ -104,8 +104,10 @@ pub fn read_distances(path: &Path) -> Result<Distances, FileError> {
     })?;
     let sensors = matrix.rows;
     if matrix.columns != sensors {
-        let message =
-            format!("distances must be a square matrix, but the shape is {sensors} x {}", matrix.columns);
+        let message = format!(
+            "distances must be a square matrix, but the shape is {sensors} x {}; give what `bodyschema distance` writes",
+            matrix.columns
+        );
         return Err(FileError::new(path, message));
     }
     let distances = Distances { sensors, values: matrix.values };

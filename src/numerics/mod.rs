@@ -5,5 +5,5 @@ pub mod partition;
 pub mod range;
 pub mod rng;
 pub(crate) mod simd;
-#[cfg(test)]
-pub(crate) mod testing;
+#[doc(hidden)]
+pub mod testing;

@@ -7,8 +7,10 @@ use super::markdown;
 use super::numbers;
 use crate::analysis::cells::EstimateCells;
 use crate::analysis::claims::{Judged, Verdict};
-use crate::analysis::published::{Claim, Unit};
+use crate::analysis::one_body::{OneBody, SingleBodies};
+use crate::analysis::published::{Claim, HEADLINE, Unit};
 use crate::analysis::statistics::{Estimate, rate_difference};
+use crate::stages::schema::Sampler;
 
 /// A row of `claims.csv`. A claim that counts draws has two, one for each [`Counting`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -17,6 +19,9 @@ pub struct Row {
     pub id: String,
     /// Which draws are counted.
     pub counting: Counting,
+    /// The reading of the paper that they follow. Beside the claims of a run, the other reading has its headline.
+    #[serde(default)]
+    pub reading: Option<Sampler>,
     /// Number of its figure; empty if no figure shows it.
     pub figure: String,
     /// Where the paper says so.
@@ -42,6 +47,24 @@ pub struct Row {
     pub verdict: Option<Verdict>,
     /// Where the value was found, or why there is no value.
     pub found: String,
+    /// Single bodies with a value; empty for the best draw, as the next.
+    #[serde(default)]
+    pub bodies: Option<usize>,
+    /// Share of them in which the published value would have been seen.
+    #[serde(default)]
+    pub bodies_share: Option<f64>,
+    /// Lower end of its 95 % interval.
+    #[serde(default)]
+    pub bodies_low: Option<f64>,
+    /// Upper end of its 95 % interval.
+    #[serde(default)]
+    pub bodies_high: Option<f64>,
+    /// Share of them in which all other claims hold, too.
+    #[serde(default)]
+    pub bodies_together: Option<f64>,
+    /// The verdict on single bodies.
+    #[serde(default)]
+    pub one_body: Option<OneBody>,
 }
 
 /// Stands in place of a verdict in the rows of the best draw.
@@ -49,7 +72,7 @@ const EXTENSION: &str = "extension";
 
 impl Row {
     /// Names of the cells that people see.
-    pub const HEADER: [&'static str; 10] = [
+    pub const HEADER: [&'static str; 11] = [
         "verdict",
         "claim",
         "published",
@@ -58,29 +81,41 @@ impl Row {
         "n",
         "single simulations",
         "accepted",
+        "one body shows it",
         "where",
         "paper",
     ];
 
     /// As published: over all draws.
-    fn all_draws(claim: &Claim, estimate: &Estimate, found: &str, verdict: Verdict) -> Self {
+    fn all_draws(judged: &Judged) -> Self {
+        let Judged { claim, reproduced, place, verdict, single_bodies, .. } = judged;
         let (accepted_low, accepted_high) = claim.accept.unzip();
+        let tested = single_bodies.as_ref().filter(|bodies| bodies.alone.n > 0);
+        let (bodies_low, bodies_high) = tested.and_then(|bodies| bodies.alone.interval).unzip();
         Self {
             counting: Counting::AllDraws,
+            reading: Some(judged.reading),
             published: claim.published,
             wording: claim.wording.clone(),
             accepted_low,
             accepted_high,
-            verdict: Some(verdict),
-            ..Self::best_draw(claim, estimate, found)
+            verdict: Some(*verdict),
+            bodies: tested.map(|bodies| bodies.alone.n),
+            bodies_share: tested.and_then(|bodies| bodies.alone.value),
+            bodies_low,
+            bodies_high,
+            bodies_together: tested.and_then(|bodies| bodies.together.value),
+            one_body: tested.and_then(SingleBodies::verdict),
+            ..Self::best_draw(claim, judged.reading, reproduced, place)
         }
     }
 
     /// The extension: over the draw of highest log posterior of each simulation.
-    fn best_draw(claim: &Claim, estimate: &Estimate, found: &str) -> Self {
+    fn best_draw(claim: &Claim, reading: Sampler, estimate: &Estimate, found: &str) -> Self {
         Self {
             id: claim.id.clone(),
             counting: Counting::BestDraw,
+            reading: Some(reading),
             figure: claim.figure.clone(),
             place: claim.place.clone(),
             statement: claim.statement.clone(),
@@ -93,7 +128,31 @@ impl Row {
             accepted_high: None,
             verdict: None,
             found: found.to_owned(),
+            bodies: None,
+            bodies_share: None,
+            bodies_low: None,
+            bodies_high: None,
+            bodies_together: None,
+            one_body: None,
         }
+    }
+
+    /// The share of single bodies that show the claim, in words.
+    fn bodies_in_words(&self) -> String {
+        let share = |value: Option<f64>| numbers::value(value, Some(Unit::Rate));
+        let (Some(verdict), Some(bodies)) = (self.one_body, self.bodies) else { return String::new() };
+        let interval = numbers::range(self.bodies_low.zip(self.bodies_high), Some(Unit::Rate));
+        format!(
+            "{}: {} of {bodies} bodies ({interval}); with all others {}",
+            verdict.name(),
+            share(self.bodies_share),
+            share(self.bodies_together)
+        )
+    }
+
+    /// Whether the row is of the claim that the paper is cited for, which two readings have.
+    fn is_headline(&self) -> bool {
+        self.id == HEADLINE
     }
 
     /// The accepted range.
@@ -117,8 +176,12 @@ impl Row {
     }
 
     /// Its cells for people, as [`Row::HEADER`] names them.
-    pub fn in_words(&self) -> [String; 10] {
+    pub fn in_words(&self) -> [String; 11] {
         let claim = match self.counting {
+            Counting::AllDraws if self.is_headline() => {
+                let reading = self.reading.map_or("", Sampler::in_words);
+                format!("{}, {reading}", self.statement)
+            }
             Counting::AllDraws => self.statement.clone(),
             Counting::BestDraw => format!("{}: draw of highest log posterior", self.statement),
         };
@@ -136,6 +199,7 @@ impl Row {
             self.unit.map_or(String::new(), |_| self.cells.n.to_string()),
             numbers::range(spread, self.unit),
             numbers::range(self.accepted(), self.unit),
+            self.bodies_in_words(),
             self.found.clone(),
             paper,
         ]
@@ -144,9 +208,11 @@ impl Row {
 
 /// The table of claims: a row for each claim, followed by one for the best draws if the claim counts draws.
 pub fn rows(judged: &[Judged]) -> Vec<Row> {
-    let both = |Judged { claim, reproduced, place, verdict, best }: &Judged| {
-        let best = best.as_ref().map(|(estimate, place)| Row::best_draw(claim, estimate, place));
-        std::iter::once(Row::all_draws(claim, reproduced, place, *verdict)).chain(best)
+    let both = |judged: &Judged| {
+        let best = judged.best.as_ref();
+        let best =
+            best.map(|(estimate, place)| Row::best_draw(&judged.claim, judged.reading, estimate, place));
+        std::iter::once(Row::all_draws(judged)).chain(best)
     };
     judged.iter().flat_map(both).collect()
 }
@@ -162,15 +228,17 @@ pub fn markdown(preamble: &str, judged: &[Judged]) -> String {
 
 /// The table for a terminal, a line for each row.
 pub fn terminal_table(judged: &[Judged]) -> String {
-    let header = ["verdict", "claim", "published", "reproduced", "95 % interval", "n"].map(str::to_owned);
+    let header = ["verdict", "claim", "published", "reproduced", "95 % interval", "n", "one body shows it"]
+        .map(str::to_owned);
     let cells = |row: Row| {
+        let one_body = row.one_body.map_or("", OneBody::name).to_owned();
         let [verdict, _, published, reproduced, interval, n, ..] = row.in_words();
-        [verdict, row.id, published, reproduced, interval, n]
+        [verdict, row.id, published, reproduced, interval, n, one_body]
     };
     let rows: Vec<_> = std::iter::once(header).chain(self::rows(judged).into_iter().map(cells)).collect();
     let widths: Vec<usize> =
-        (0..6).map(|column| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0)).collect();
-    let line = |row: &[String; 6]| {
+        (0..7).map(|column| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0)).collect();
+    let line = |row: &[String; 7]| {
         let cells: Vec<String> =
             row.iter().zip(&widths).map(|(cell, &width)| format!("{cell:width$}")).collect();
         cells.join(" | ").trim_end().to_owned()
@@ -180,11 +248,12 @@ pub fn terminal_table(judged: &[Judged]) -> String {
 
 /// Published and reproduced rate side by side, with the difference, for a claim whose counts may be known.
 pub fn comparison(judged: &Judged) -> Option<String> {
-    let Judged { claim, reproduced, verdict, .. } = judged;
+    let Judged { claim, reproduced, verdict, reading, .. } = judged;
+    let reading = reading.in_words();
     let &(k, n) = claim.possible_counts.first()?;
     let Some(value) = reproduced.value else {
         return Some(format!(
-            "{}: published {} | reproduced no rate, 0 of 0 eligible draws | {}",
+            "{}, {reading}: published {} | reproduced no rate, 0 of 0 eligible draws | {}",
             claim.statement,
             claim.wording,
             verdict.name()
@@ -197,7 +266,7 @@ pub fn comparison(judged: &Judged) -> Option<String> {
     };
     let differences: Vec<String> = claim.possible_counts.iter().map(difference).collect();
     Some(format!(
-        "{}: published {} | reproduced {} | n = {} | 95 % interval {} | difference {:+.1} points, 95 % interval {} | {}",
+        "{}, {reading}: published {} | reproduced {} | n = {} | 95 % interval {} | difference {:+.1} points, 95 % interval {} | {}",
         claim.statement,
         claim.wording,
         numbers::value(Some(value), Some(Unit::Rate)),

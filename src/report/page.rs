@@ -57,7 +57,7 @@ fn page(rows: &[Row], figures: &[(Figure, String)], manifest: &Manifest) -> Mark
                          Random Movements"
                     } " (Advanced Robotics, 2017)." }
                     p { (manifest.summary.as_deref().unwrap_or_default()) }
-                    p.headline { (manifest.headline.join(", ")) }
+                    @for line in &manifest.headline { p.headline { (line) } }
                     nav {
                         @for (to, name) in
                             [("claims", "Claims"), ("figures", "Figures"), ("settings", "Settings"), ("manifest", "Manifest")]

@@ -173,6 +173,7 @@ mod tests {
         Row {
             id: "claim".to_owned(),
             counting: Counting::AllDraws,
+            reading: None,
             figure: String::new(),
             place: String::new(),
             statement: String::new(),
@@ -185,6 +186,12 @@ mod tests {
             accepted_high: Some(accepted.1),
             verdict: Some(Verdict::Reproduced),
             found: String::new(),
+            bodies: None,
+            bodies_share: None,
+            bodies_low: None,
+            bodies_high: None,
+            bodies_together: None,
+            one_body: None,
         }
     }
 

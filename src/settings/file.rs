@@ -59,6 +59,16 @@ impl Settings {
         Self::checked(table, origin)
     }
 
+    /// These settings with a file's text laid over them; `origin` says which.
+    ///
+    /// # Errors
+    /// If a key is unknown, or a value is out of range.
+    pub fn with(&self, text: &str, origin: &str) -> Result<Self, SettingsError> {
+        let mut table = Table::try_from(self).expect("settings can be written as a table");
+        overlay(&mut table, parse(text, origin)?, "", origin)?;
+        Self::checked(table, origin)
+    }
+
     fn checked(table: Table, origin: &str) -> Result<Self, SettingsError> {
         let settings: Self = table.try_into().map_err(|error: toml::de::Error| SettingsError::Malformed {
             message: one_line(&error.to_string()),

@@ -6,7 +6,7 @@ use crate::analysis::published::figures;
 use crate::analysis::statistics::mean;
 use crate::pipeline::Record;
 use crate::stages::baselines::Clustering;
-use crate::stages::schema::Model;
+use crate::stages::schema::{Model, Sampler};
 
 fn record(model: Model, dimension: usize, parts: usize, ari: f64, tree_correct: bool) -> Record {
     Record {
@@ -33,7 +33,8 @@ fn judge_with(id: &str, records: &[Record], baselines: Vec<BaselineEstimate>) ->
     let claim = claims().into_iter().find(|claim| claim.id == id).unwrap();
     let experiment = claim.experiments[0];
     let simulations = records.iter().map(|record| record.simulation).max().unwrap_or(1);
-    let evidence = Evidence { conditions: Conditions::new(records.to_vec(), simulations, 1), baselines };
+    let conditions = Conditions::new(records.to_vec(), simulations, 1);
+    let evidence = Evidence { conditions, baselines, reading: Sampler::Equations };
     judge(experiment, &evidence).into_iter().find(|judged| judged.claim.id == id).unwrap()
 }
 

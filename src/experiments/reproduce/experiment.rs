@@ -8,11 +8,13 @@ use serde_json::{Value, json};
 use super::super::batch::{Batch, Found, Keep, Task};
 use super::super::error::ExperimentError;
 use super::super::progress::progress;
+use super::reading::other_reading;
 use super::run::{Run, preamble};
-use crate::analysis::claims::{Judged, judge};
+use crate::analysis::claims::{Judged, headline, judge};
 use crate::analysis::conditions::{Conditions, baseline_estimates};
 use crate::analysis::measure::Evidence;
 use crate::analysis::published::{Experiment, figures};
+use crate::analysis::single_bodies::add_single_bodies;
 use crate::files::FileError;
 use crate::files::checkpoint::Checkpoints;
 use crate::files::manifest::{HashedFile, Manifest, write_circumstances};
@@ -23,42 +25,60 @@ use crate::pipeline::Condition;
 use crate::report::claims_table::{comparison, markdown, rows};
 use crate::report::figures::Figures;
 use crate::report::{page, plot};
-use crate::settings::Settings;
+use crate::settings::{Settings, SettingsError};
 use crate::stages::agent::Agent;
 use crate::stages::schema::Model;
-use crate::stages::simulate::{Trajectory, simulate};
+use crate::stages::simulate::{Resolution, Trajectory, simulate};
 
-/// Runs an experiment: all its simulations, conditions and figures. Returns the judged claims.
+/// A finished experiment.
+#[derive(Debug)]
+pub struct Finished {
+    /// What was run, in words.
+    pub preamble: String,
+    /// All claims, with that of the other reading after the headline.
+    pub judged: Vec<Judged>,
+}
+
+/// Runs an experiment: all its simulations, conditions and figures.
 ///
 /// A run that was interrupted goes on from what it finished, and ends with the same files.
 ///
 /// # Errors
 /// If a stage fails or a file cannot be written.
-pub fn reproduce(run: &Run) -> Result<Vec<Judged>, ExperimentError> {
+pub fn reproduce(run: &Run) -> Result<Finished, ExperimentError> {
     let begun = (SystemTime::now(), Instant::now());
     let mut folder = ResultFolder::new(run.out);
     folder.remove(made_anew())?;
     let checkpoints = Checkpoints::new(run.out, &(run.experiment, run.settings));
-    let tasks = tasks(run);
-    let bar = progress(Batch::length(&tasks), "movement".to_owned());
+    let (tasks, others) = (tasks(run), other_tasks(run)?);
+    let all = beside(&tasks, &others);
+    let bar = progress(Batch::length(&all), "movement".to_owned());
     let batch = Batch { out: run.out, checkpoints: &checkpoints, bar: &bar };
     let movements = movements(run)?;
-    let mut found = batch.one_by_one(&tasks)?;
+    let (mut found, other) = apart(&all, batch.one_by_one(&all)?);
     bar.finish_and_clear();
     for kept in found.iter_mut().filter_map(|found| found.kept.as_mut()) {
         folder.remember(std::mem::take(&mut kept.files));
     }
 
     let evidence = write_draws(run, &found, &mut folder)?;
+    let other = write_other_draws(run, &others, &other, &mut folder)?;
     write_figures(run, &tasks, &found, &movements, &evidence, &mut folder)?;
-    let judged = judge(run.experiment, &evidence);
+    let mut judged = judge(run.experiment, &evidence);
+    add_single_bodies(run.experiment, &mut judged, &evidence_of_bodies(run, &found, &evidence));
+    if let Some(other) = other {
+        judged.insert(1, headline(run.experiment, &other));
+    }
+    let resolution =
+        found.iter().map(|found| found.resolution).fold(Resolution::default(), Resolution::worse);
+    let preamble = preamble(run, resolution);
     folder.write_rows("claims.csv", rows(&judged))?;
-    folder.write_text("claims.md", &markdown(&preamble(run), &judged))?;
-    folder.write_manifest(manifest(run, &tasks, &found, &judged)?)?;
+    folder.write_text("claims.md", &markdown(&preamble, &judged))?;
+    folder.write_manifest(manifest(run, &preamble, &tasks, &found, &judged)?)?;
     page::write(run.out)?;
     write_circumstances(run.out, begun)?;
     checkpoints.clear()?;
-    Ok(judged)
+    Ok(Finished { preamble, judged })
 }
 
 /// Files of an earlier run that must not stand beside those of this one while it works.
@@ -66,7 +86,7 @@ fn made_anew() -> impl Iterator<Item = String> {
     let pictures = figures()
         .into_iter()
         .flat_map(|figure| ["csv", "svg"].map(|extension| format!("figures/{}.{extension}", figure.name)));
-    let names = ["claims.csv", "claims.md", "report.html", "manifest.json", "run.json"];
+    let names = ["other-reading.csv", "claims.csv", "claims.md", "report.html", "manifest.json", "run.json"];
     names.map(str::to_owned).into_iter().chain(pictures)
 }
 
@@ -108,6 +128,63 @@ fn tasks(run: &Run) -> Vec<Task> {
     }
 }
 
+/// One task for each simulation: the headline's condition by the other reading of the paper; none if the run has not this
+/// condition.
+fn other_tasks(run: &Run) -> Result<Vec<Task>, SettingsError> {
+    let settings = other_reading(run.settings)?;
+    let (experiment, coordination) = (&settings.experiment, settings.motion.coordination);
+    let dimension = experiment.dimension;
+    let has = match run.experiment {
+        Experiment::Exp1 => experiment.dimensions.contains(&dimension),
+        Experiment::Exp2 => experiment.coordinations.contains(&coordination),
+    };
+    let task = |simulation| Task {
+        name: format!("other-reading/simulation-{simulation}"),
+        settings: settings.clone(),
+        simulation,
+        conditions: vec![Condition { model: Model::DpgmmLj, coordination, dimension }],
+        clustered: Vec::new(),
+        keep: Keep::Nothing,
+    };
+    Ok((1..=experiment.simulations).filter(|_| has).map(task).collect())
+}
+
+/// Puts each task of the other reading behind the one whose movement it shares.
+fn beside(tasks: &[Task], others: &[Task]) -> Vec<Task> {
+    let mut all = Vec::new();
+    for task in tasks {
+        all.push(task.clone());
+        let p = task.settings.motion.coordination;
+        let shares =
+            |other: &&Task| other.simulation == task.simulation && other.settings.motion.coordination == p;
+        all.extend(others.iter().find(shares).cloned());
+    }
+    all
+}
+
+/// What the tasks of the run found, and what those of the other reading did.
+fn apart(all: &[Task], found: Vec<Found>) -> (Vec<Found>, Vec<Found>) {
+    let pairs = all.iter().zip(found);
+    let (run, other): (Vec<_>, Vec<_>) = pairs.partition(|(task, _)| task.keep != Keep::Nothing);
+    let found = |pairs: Vec<(&Task, Found)>| pairs.into_iter().map(|(_, found)| found).collect();
+    (found(run), found(other))
+}
+
+/// Writes the draws of the other reading, if there are any, and returns them as evidence.
+fn write_other_draws(
+    run: &Run,
+    tasks: &[Task],
+    found: &[Found],
+    folder: &mut ResultFolder,
+) -> Result<Option<Evidence>, FileError> {
+    let Some(task) = tasks.first() else { return Ok(None) };
+    let records: Vec<_> = found.iter().flat_map(|found| &found.records).copied().collect();
+    folder.write_rows("other-reading.csv", &records)?;
+    let experiment = &run.settings.experiment;
+    let conditions = Conditions::new(records, experiment.simulations, experiment.seed);
+    Ok(Some(Evidence { conditions, baselines: Vec::new(), reading: task.settings.schema.sampler }))
+}
+
 /// Writes all draws, and in experiment 1 all clusterings; returns the estimates over them.
 fn write_draws(run: &Run, found: &[Found], folder: &mut ResultFolder) -> Result<Evidence, FileError> {
     let records: Vec<_> = found.iter().flat_map(|found| &found.records).copied().collect();
@@ -120,7 +197,23 @@ fn write_draws(run: &Run, found: &[Found], folder: &mut ResultFolder) -> Result<
     Ok(Evidence {
         conditions: Conditions::new(records, experiment.simulations, experiment.seed),
         baselines: baseline_estimates(&baselines),
+        reading: run.settings.schema.sampler,
     })
+}
+
+/// What each simulation alone offers to judge claims by.
+fn evidence_of_bodies(run: &Run, found: &[Found], evidence: &Evidence) -> Vec<Evidence> {
+    let all: Vec<_> = found.iter().flat_map(|found| &found.baselines).copied().collect();
+    let of = |simulation: usize| {
+        let baselines: Vec<_> =
+            all.iter().filter(|record| record.simulation == simulation).copied().collect();
+        Evidence {
+            conditions: evidence.conditions.of_simulation(simulation),
+            baselines: baseline_estimates(&baselines),
+            reading: evidence.reading,
+        }
+    };
+    (1..=run.settings.experiment.simulations).map(of).collect()
 }
 
 /// Writes the table and the picture of every figure that the experiment shows.
@@ -191,7 +284,13 @@ fn movements(run: &Run) -> Result<Option<Movements>, ExperimentError> {
 }
 
 /// What the results depend on; their hashes come with the folder.
-fn manifest(run: &Run, tasks: &[Task], found: &[Found], judged: &[Judged]) -> Result<Manifest, FileError> {
+fn manifest(
+    run: &Run,
+    preamble: &str,
+    tasks: &[Task],
+    found: &[Found],
+    judged: &[Judged],
+) -> Result<Manifest, FileError> {
     let settings = run.settings;
     let hash = |path: &Path| HashedFile::new(&path.display().to_string(), path);
     let inputs = run.settings_file.into_iter().map(hash).collect::<Result<_, _>>()?;
@@ -204,7 +303,7 @@ fn manifest(run: &Run, tasks: &[Task], found: &[Found], judged: &[Judged]) -> Re
     };
     Ok(Manifest {
         experiment: Some(run.experiment.name().to_owned()),
-        summary: Some(preamble(run)),
+        summary: Some(preamble.to_owned()),
         headline: judged.iter().filter_map(comparison).collect(),
         quick: Some(run.quick),
         seed: settings.experiment.seed,

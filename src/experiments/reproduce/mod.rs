@@ -1,7 +1,8 @@
 //! Reproduce an experiment of the paper: a folder with its draws, figures, verdicts, manifest and report.
 
 mod experiment;
+mod reading;
 mod run;
 
-pub use self::experiment::reproduce;
-pub use self::run::{Run, preamble};
+pub use self::experiment::{Finished, reproduce};
+pub use self::run::Run;

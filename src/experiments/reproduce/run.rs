@@ -5,6 +5,7 @@ use std::path::Path;
 use super::super::seeds::is_held_out;
 use crate::analysis::published::Experiment;
 use crate::settings::Settings;
+use crate::stages::simulate::Resolution;
 
 /// How an experiment is run.
 #[derive(Debug)]
@@ -32,8 +33,9 @@ impl Run<'_> {
     }
 }
 
-/// Conditions, amounts, seed and revision of a run, in words: what stands above the table of claims.
-pub fn preamble(run: &Run) -> String {
+/// Conditions, amounts, seed and revision of a run, and how well its movements were resolved, in words: what stands above
+/// the table of claims.
+pub fn preamble(run: &Run, resolution: Resolution) -> String {
     let Settings { motion, schema, experiment, .. } = run.settings;
     let what = match run.experiment {
         Experiment::Exp1 => {
@@ -52,8 +54,15 @@ pub fn preamble(run: &Run) -> String {
         1 => "Intervals are over the chains of this one simulation; another can differ by more.",
         _ => "Intervals are over simulations (bootstrap).",
     };
+    let Resolution { anchor_separation, turn } = resolution;
+    let resolved = format!(
+        "The physics step {} the movements: anchors come apart by at most {:.1} mm, a part turns by at most {turn:.2} of a \
+         turn in a step (limits: 10 mm and 0.1).",
+        if resolution.is_resolved() { "resolves" } else { "does not resolve" },
+        1e3 * anchor_separation,
+    );
     format!(
-        "{what}; {} simulation(s), {} chains of {} sweeps for each condition, seed {} ({seed}), revision {}.{caution} {scope} \
+        "{what}; {} simulation(s), {} chains of {} sweeps for each condition, seed {} ({seed}), revision {}.{caution} {resolved} {scope} \
          Rows marked extension count, of each simulation, only the draw of highest log posterior, which the paper does \
          not.",
         experiment.simulations,

@@ -62,7 +62,7 @@ fn evidence(experiment: Experiment, settings: &Settings, outcome: &Outcome) -> E
             record.dimension == settings.experiment.dimension && record.model == Model::DpgmmLj
         }
     });
-    Evidence { conditions, baselines: Vec::new() }
+    Evidence { conditions, baselines: Vec::new(), reading: settings.schema.sampler }
 }
 
 impl Term {
@@ -82,6 +82,7 @@ mod tests {
     use crate::analysis::claims::Verdict;
     use crate::analysis::published::claims;
     use crate::analysis::statistics::Estimate;
+    use crate::stages::schema::Sampler;
 
     #[test]
     fn credit_is_full_within_the_range_and_falls_to_nothing_outside() {
@@ -91,8 +92,15 @@ mod tests {
         let credit = |value: Option<f64>| {
             let reproduced = Estimate::bare(value, 10);
             let verdict = Verdict::NotTestable;
-            let judged =
-                Judged { claim: claim.clone(), reproduced, place: String::new(), verdict, best: None };
+            let judged = Judged {
+                claim: claim.clone(),
+                reproduced,
+                place: String::new(),
+                verdict,
+                best: None,
+                reading: Sampler::Equations,
+                single_bodies: None,
+            };
             term.credit(&judged)
         };
         assert_eq!([low, 0.5 * (low + high), high].map(|value| credit(Some(value))), [1.0; 3]);

@@ -3,15 +3,12 @@
 use super::design::{DEFAULT, Design, Factor, default_value};
 use super::survival::{Survival, counts};
 use super::table::{Measure, Row};
-use crate::analysis::published::{claims, figures};
+use crate::analysis::published::{HEADLINE, claims, figures};
 use crate::analysis::statistics::quantile;
 use crate::report::markdown::{row, rule};
 use crate::report::plot::effects::{Column, Line};
 use crate::settings::Settings;
 use crate::stages::schema::Model;
-
-/// The claim that the page asks about: the published tree accuracy.
-const HEADLINE: &str = "tree-accuracy";
 
 /// The page of a study: its rows, with where its main condition is.
 pub struct Page<'a> {

@@ -4,9 +4,11 @@ use super::*;
 use crate::analysis::claims::judge;
 use crate::analysis::conditions::Conditions;
 use crate::analysis::measure::Evidence;
+use crate::analysis::one_body::{OneBody, SingleBodies};
 use crate::analysis::published::Experiment;
+use crate::analysis::statistics::rate;
 use crate::pipeline::Record;
-use crate::stages::schema::Model;
+use crate::stages::schema::{Model, Sampler};
 
 /// A draw of DPGMM-LJ at d = 14 and p = 0.9; `right` says whether its tree is right, if it is eligible.
 fn draw(simulation: usize, chain: usize, right: Option<bool>) -> Record {
@@ -28,7 +30,7 @@ fn draw(simulation: usize, chain: usize, right: Option<bool>) -> Record {
 fn judged(records: Vec<Record>) -> Vec<Judged> {
     let simulations = records.iter().map(|record| record.simulation).max().unwrap_or(1);
     let conditions = Conditions::new(records, simulations, 1);
-    judge(Experiment::Exp1, &Evidence { conditions, baselines: Vec::new() })
+    judge(Experiment::Exp1, &Evidence { conditions, baselines: Vec::new(), reading: Sampler::Equations })
 }
 
 /// 20 eligible draws of one simulation, of which the last is wrong.
@@ -45,7 +47,7 @@ fn no_eligible_draw() -> Vec<Judged> {
 fn the_comparison_carries_difference_and_both_intervals() {
     let line = comparison(&nineteen_of_twenty()[0]).unwrap();
     for words in [
-        "published 84.6 %",
+        "as the equations say: published 84.6 %",
         "reproduced 95.0 %",
         "n = 20",
         "95 % interval 76.4 to 99.1 %",
@@ -70,17 +72,32 @@ fn a_row_of_all_draws_has_numbers_for_machines_and_percent_for_people() {
     assert_eq!(row.verdict, Some(Verdict::NotReproduced));
     let people = [
         "not reproduced",
-        "Tree accuracy of DPGMM-LJ at p = 0.9, d = 14",
+        "Tree accuracy of DPGMM-LJ at p = 0.9, d = 14, as the equations say",
         "84.6 %",
         "95.0 %",
         "76.4 to 99.1 %",
         "20",
         "",
         "74.6 to 94.6 %",
+        "",
         "d = 14",
         "figure 11b, section 6.2 and abstract",
     ];
     assert_eq!(row.in_words(), people);
+}
+
+#[test]
+fn a_row_says_how_often_single_bodies_show_the_claim() {
+    let mut judged = nineteen_of_twenty();
+    let share = |seen| rate(seen, 4);
+    judged[0].single_bodies = Some(SingleBodies { alone: share(1), together: share(0) });
+    let row = &rows(&judged)[0];
+    assert_eq!((row.bodies, row.bodies_share, row.bodies_together), (Some(4), Some(0.25), Some(0.0)));
+    assert_eq!(row.one_body, Some(OneBody::Possible));
+    let words = &row.in_words()[8];
+    assert!(words.starts_with("possible: 25.0 % of 4 bodies (4.6 to 69.9 %); with all others 0"), "{words}");
+    judged[0].single_bodies = Some(SingleBodies { alone: rate(0, 0), together: rate(0, 0) });
+    assert_eq!(rows(&judged)[0].in_words()[8], "");
 }
 
 #[test]
@@ -112,7 +129,7 @@ fn a_claim_that_counts_draws_is_followed_by_its_best_draws() {
 fn a_claim_without_draws_says_so_and_nowhere_none() {
     let judged = no_eligible_draw();
     let rows = rows(&judged);
-    let [verdict, _, _, reproduced, interval, n, spread, accepted, found, _] = rows[0].in_words();
+    let [verdict, _, _, reproduced, interval, n, spread, accepted, _, found, _] = rows[0].in_words();
     assert_eq!([&verdict, &reproduced, &interval, &n, &spread], ["not testable", "–", "", "0", ""]);
     assert_eq!((accepted.as_str(), found.as_str()), ("74.6 to 94.6 %", "no value: d = 14"));
     let by_eye = rows.iter().find(|row| row.id == "natural-movement").unwrap();
@@ -138,7 +155,8 @@ fn a_table_is_read_back_as_it_was_written() {
         assert_eq!(crate::files::tables::read_rows::<Row>(&path).unwrap(), rows);
     }
     let text = std::fs::read_to_string(&path).unwrap();
-    let header = "id,counting,figure,place,statement,unit,published,wording,value,n,low,high,simulations,lowest,highest,\
-                  accepted_low,accepted_high,verdict,found";
+    let header = "id,counting,reading,figure,place,statement,unit,published,wording,value,n,low,high,simulations,lowest,\
+                  highest,accepted_low,accepted_high,verdict,found,bodies,bodies_share,bodies_low,bodies_high,\
+                  bodies_together,one_body";
     assert_eq!(text.lines().next(), Some(header));
 }

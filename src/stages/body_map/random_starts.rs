@@ -251,7 +251,9 @@ mod tests {
     fn points_that_coincide_on_the_map_do_not_move_each_other_to_infinity() {
         let distances = distances(9);
         let mut descent = Descent::new(&distances, &BodyMap { dims: 2, coordinates: vec![0.5; 18] });
-        (0..3).for_each(|_| drop(descent.step()));
+        for _ in 0..3 {
+            descent.step();
+        }
         assert!(descent.map().coordinates.iter().all(|x| x.is_finite()));
     }
 

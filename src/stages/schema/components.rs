@@ -37,6 +37,11 @@ impl<'a> Components<'a> {
         Ok(Self { prior, empty, spread, joints_in_scatter, stale_joints })
     }
 
+    /// Whether the covariance of a mean is Ψ⁻¹ / k instead of Σ / k.
+    pub fn has_inverse_scale(&self) -> bool {
+        self.spread == MeanSpread::InverseScale
+    }
+
     /// Draws all components.
     ///
     /// # Errors

@@ -168,7 +168,7 @@ fn collapsed(update: Update, rng: &mut impl Rng) -> Result<Vec<Joint>, Inference
 }
 
 /// Prim's tree over the active components, from where the departures have its root.
-fn tree(update: Update, mut weight: impl FnMut(usize, usize) -> f64) -> Vec<Edge> {
+pub fn tree(update: Update, mut weight: impl FnMut(usize, usize) -> f64) -> Vec<Edge> {
     let active = update.active;
     match update.departures.root {
         Root::FirstActive => prim(active, weight),

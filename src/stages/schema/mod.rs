@@ -3,24 +3,22 @@
 //! In: a [`BodyMap`](super::body_map::BodyMap), M × d, and the settings [`Schema`]. Out: [`Draw`]s, each with the
 //! component of every sensor and the tree over the components.
 
-mod components;
+pub(crate) mod components;
 mod departures;
 mod draw;
 mod error;
 mod gibbs;
 mod infer;
-mod joints;
-mod latent_tree;
+pub(crate) mod joints;
+pub(crate) mod latent_tree;
 mod prior;
 mod settings;
 
-pub use self::components::Components;
 pub use self::departures::{Densities, Departures, EmptyComponents, MeanCovariance, Root};
 pub use self::draw::{Draw, best, one_part};
 pub use self::error::{InferenceError, matrices_fit};
 pub use self::gibbs::Chain;
 pub use self::infer::infer;
 pub use self::joints::collapsed_cost;
-pub use self::latent_tree::{Joint, LatentTree, Update};
 pub use self::prior::prior;
 pub use self::settings::{EdgeWeight, Keep, Model, Prior, Sampler, Schema, Start};

@@ -77,6 +77,16 @@ pub enum Sampler {
     AuthorsCode,
 }
 
+impl Sampler {
+    /// The reading in words, as a headline has it.
+    pub fn in_words(self) -> &'static str {
+        match self {
+            Self::Equations => "as the equations say",
+            Self::AuthorsCode => "as the authors' code computes",
+        }
+    }
+}
+
 /// Which draws of a chain are kept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
