@@ -7,7 +7,8 @@ RESULTS is the folder that holds exp1, exp2, search and sensitivity (default: re
 - docs/results.md: the tables of both experiments, from their claims.md;
 - docs/shown/: two figures, and the tables and pictures of search and sensitivity;
 - docs/sensitivity.md: the page of the sensitivity study;
-- DEVIATIONS.md: the table of open settings, from paper.toml, sensitivity.toml and search.toml. It needs no run.
+- DEVIATIONS.md: the table of open settings, from paper.toml, sensitivity.toml and the search that is
+  shown. It needs no run.
 
 What RESULTS does not hold is skipped, with a line on standard error. Needs Python 3.11, and no packages.
 """
@@ -157,8 +158,13 @@ def experiment(folder, figure):
 
 
 def search(results):
-    names = ["search.md", "scores.csv", "credits.csv", "next.toml"]
-    names += [name for name in ["best.toml"] if (results / "search" / name).exists()]
+    names = ["search.md", "scores.csv", "credits.csv"]
+    # The last round leaves no candidates, and one without a resolved candidate no winner.
+    for name in ["next.toml", "best.toml"]:
+        if (results / "search" / name).exists():
+            names.append(name)
+        else:
+            (SHOWN / "search" / name).unlink(missing_ok=True)
     copy([results / "search" / name for name in names], SHOWN / "search")
 
 
@@ -186,14 +192,9 @@ def deviations():
     settings = read_settings()
     folder = ROOT / "reproduce"
     study = tomllib.loads((folder / "sensitivity.toml").read_text())
-    factors = tomllib.loads((folder / "search.toml").read_text())["factor"]
-    searched = {
-        f"{section}.{key}"
-        for factor in factors
-        for option in factor["options"]
-        for section, keys in option.items()
-        for key in keys
-    }
+    # What the search that is shown has varied.
+    with open(SHOWN / "search" / "scores.csv", newline="") as file:
+        searched = {key for row in csv.DictReader(file) for key in re.findall(r"([\w.]+) = ", row["settings"])}
     lines = ["| setting | the paper says | ours | reason | source |", "|---|---|---|---|---|"]
     named = set()
     for part in study["part"]:

@@ -65,7 +65,7 @@ const SETTINGS: [(&str, Range); 58] = [
     ("map.of", Word(&["distances", "rows"])),
     ("map.method", Word(&["classical", "smacof", "smacof-random", "nonmetric"])),
     ("map.starts", Whole(1, 1000)),
-    ("map.steps", Whole(1, i64::MAX as u64)),
+    ("map.steps", Whole(1, 100_000)),
     ("map.tolerance", Real(0.0, 1e6)),
     ("schema.sampler", Word(&["equations", "authors-code"])),
     ("schema.components", Whole(1, 1000)),

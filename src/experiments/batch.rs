@@ -109,27 +109,35 @@ impl Batch<'_> {
         tasks.iter().map(Task::length).sum()
     }
 
-    /// Runs one task after the other, each on all threads. Of all but the first, only the files of the body are kept.
+    /// Runs one task after the other, each on all threads, up to the first with files that fails; the outcome of one
+    /// without files may be a failure. Of all but the first, only the files of the body are kept.
     ///
     /// # Errors
-    /// If a task fails, or a file cannot be written.
-    pub fn one_by_one(&self, tasks: &[Task]) -> Result<Vec<Found>, ExperimentError> {
+    /// If a file cannot be written.
+    pub fn one_by_one(&self, tasks: &[Task]) -> Result<Vec<Outcome>, ExperimentError> {
         let mut all = Vec::with_capacity(tasks.len());
         let mut shared = Shared::default();
         for (at, task) in tasks.iter().enumerate() {
             self.bar.set_message(task.name.clone());
             let progress = TaskProgress { bar: self.bar, done: AtomicU64::new(0) };
-            // Not kept among the checkpoints: what failed may succeed on a machine or with a library that differs.
-            let mut found = match self.try_to_finish(task, &mut shared, &progress) {
-                Ok(found) => found,
+            // A failure is not kept among the checkpoints: what failed may succeed on a machine or with a library that
+            // differs.
+            let mut outcome = match self.try_to_finish(task, &mut shared, &progress) {
+                Ok(found) => Ok(found),
+                Err(Stop::Failed(reason)) if task.keep == Keep::Nothing => Err(reason),
                 Err(Stop::Failed(reason)) => return Err(ExperimentError::Stage(reason)),
                 Err(Stop::File(error)) => return Err(error.into()),
             };
             progress.complete(task);
-            if at > 0 {
+            if !tasks.get(at + 1).is_some_and(|next| next.shares_movement(task)) {
+                shared = Shared::default();
+            }
+            if at > 0
+                && let Ok(found) = &mut outcome
+            {
                 (found.best, found.body) = (Vec::new(), None);
             }
-            all.push(found);
+            all.push(outcome);
         }
         Ok(all)
     }
@@ -280,6 +288,12 @@ impl Task {
         all.sort_unstable();
         all.dedup();
         all
+    }
+
+    /// Whether another task needs the same movement.
+    fn shares_movement(&self, other: &Self) -> bool {
+        let key = |task: &Self| Keys::of(&task.settings, task.simulation, &[]).movement;
+        key(self) == key(other)
     }
 
     /// Steps of the progress bar: one for each chain, and some for the movement.

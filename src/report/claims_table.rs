@@ -150,9 +150,21 @@ impl Row {
         )
     }
 
-    /// Whether the row is of the claim that the paper is cited for, which two readings have.
-    fn is_headline(&self) -> bool {
-        self.id == HEADLINE
+    /// The claim, with the reading that its draws follow where two readings have it.
+    pub fn claim(&self) -> String {
+        match self.reading.filter(|_| self.id == HEADLINE) {
+            Some(reading) => format!("{}, {}", self.statement, reading.in_words()),
+            None => self.statement.clone(),
+        }
+    }
+
+    /// Its name on the screen.
+    fn short_name(&self) -> String {
+        match self.reading.filter(|_| self.id == HEADLINE) {
+            Some(Sampler::Equations) => format!("{} (equations)", self.id),
+            Some(Sampler::AuthorsCode) => format!("{} (authors' code)", self.id),
+            None => self.id.clone(),
+        }
     }
 
     /// The accepted range.
@@ -178,12 +190,8 @@ impl Row {
     /// Its cells for people, as [`Row::HEADER`] names them.
     pub fn in_words(&self) -> [String; 11] {
         let claim = match self.counting {
-            Counting::AllDraws if self.is_headline() => {
-                let reading = self.reading.map_or("", Sampler::in_words);
-                format!("{}, {reading}", self.statement)
-            }
-            Counting::AllDraws => self.statement.clone(),
-            Counting::BestDraw => format!("{}: draw of highest log posterior", self.statement),
+            Counting::AllDraws => self.claim(),
+            Counting::BestDraw => format!("{}: draw of highest log posterior", self.claim()),
         };
         let paper = match self.figure.as_str() {
             "" => self.place.clone(),
@@ -231,9 +239,10 @@ pub fn terminal_table(judged: &[Judged]) -> String {
     let header = ["verdict", "claim", "published", "reproduced", "95 % interval", "n", "one body shows it"]
         .map(str::to_owned);
     let cells = |row: Row| {
+        let name = row.short_name();
         let one_body = row.one_body.map_or("", OneBody::name).to_owned();
         let [verdict, _, published, reproduced, interval, n, ..] = row.in_words();
-        [verdict, row.id, published, reproduced, interval, n, one_body]
+        [verdict, name, published, reproduced, interval, n, one_body]
     };
     let rows: Vec<_> = std::iter::once(header).chain(self::rows(judged).into_iter().map(cells)).collect();
     let widths: Vec<usize> =

@@ -82,7 +82,9 @@ fn page(rows: &[Row], figures: &[(Figure, String)], manifest: &Manifest) -> Mark
 
 fn claims_section(rows: &[Row]) -> Markup {
     let count = |verdict: Verdict| {
-        let with = rows.iter().filter(|row| row.verdict == Some(verdict)).count();
+        // The headline of the other reading does not count.
+        let of_run = rows.iter().filter(|row| row.reading == rows[0].reading);
+        let with = of_run.filter(|row| row.verdict == Some(verdict)).count();
         format!("{with} {}", verdict.name())
     };
     html! {
@@ -135,7 +137,7 @@ fn figure_section(figure: &Figure, svg: &str, rows: &[Row]) -> Markup {
                 p { b { "The paper" } " (" (figure.place) "): " (figure.says) }
                 @for row in rows.iter().filter(of_figure) {
                     p class=(class(row)) {
-                        (mark(row)) " " b { (row.verdict_in_words()) } ": " (row.statement)
+                        (mark(row)) " " b { (row.verdict_in_words()) } ": " (row.claim())
                         @if row.value.is_some() { " — published " (row.wording) ", reproduced " (row.reproduced()) }
                         " (" (row.found) ")"
                     }
@@ -163,8 +165,7 @@ fn settings_section(settings: &Value) -> Markup {
                     th scope="col" { "meaning" } } }
                 tbody {
                     @for Setting { key, default, source, meaning } in stated_settings() {
-                        @let (section, name) = key.split_once('.').unwrap_or(("", &key));
-                        @let value = text(&settings[section][name]);
+                        @let value = text(key.split('.').fold(settings, |table, name| &table[name]));
                         tr {
                             td data-label="setting" { code { (key) } }
                             td data-label="value" {
@@ -192,13 +193,19 @@ struct Setting {
 /// All settings with what the comments of `reproduce/paper.toml` say of them: `key = value # source: meaning`.
 fn stated_settings() -> Vec<Setting> {
     let mut section = "";
-    let mut settings = Vec::new();
+    let mut settings: Vec<Setting> = Vec::new();
     for line in PAPER.lines() {
         if let Some(name) = line.strip_prefix('[').and_then(|rest| rest.strip_suffix(']')) {
             section = name;
         }
         let Some((assignment, comment)) = line.split_once('#') else { continue };
-        let Some((name, value)) = assignment.split_once('=') else { continue };
+        let Some((name, value)) = assignment.split_once('=') else {
+            // A comment that goes on, in a line of its own that is not a heading's.
+            if let Some(Setting { meaning, .. }) = settings.last_mut().filter(|_| line.starts_with(' ')) {
+                *meaning += &format!(" {}", comment.trim());
+            }
+            continue;
+        };
         let (source, meaning) = comment.split_once(": ").unwrap_or((comment, ""));
         // The same text for a value as JSON has, in which the manifest keeps it.
         let table: toml::Table =

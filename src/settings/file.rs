@@ -59,14 +59,19 @@ impl Settings {
         Self::checked(table, origin)
     }
 
-    /// These settings with a file's text laid over them; `origin` says which.
+    /// These settings with a file's text, which must not have a seed, laid over them; `origin` says which.
     ///
     /// # Errors
     /// If a key is unknown, or a value is out of range.
     pub fn with(&self, text: &str, origin: &str) -> Result<Self, SettingsError> {
-        let mut table = Table::try_from(self).expect("settings can be written as a table");
+        // TOML has no numbers above 2⁶³, which a seed may be.
+        let mut plain = self.clone();
+        plain.experiment.seed = 0;
+        let mut table = Table::try_from(&plain).expect("settings can be written as a table");
         overlay(&mut table, parse(text, origin)?, "", origin)?;
-        Self::checked(table, origin)
+        let mut settings = Self::checked(table, origin)?;
+        settings.experiment.seed = self.experiment.seed;
+        Ok(settings)
     }
 
     fn checked(table: Table, origin: &str) -> Result<Self, SettingsError> {

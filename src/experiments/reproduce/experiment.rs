@@ -5,12 +5,12 @@ use std::time::{Instant, SystemTime};
 
 use serde_json::{Value, json};
 
-use super::super::batch::{Batch, Found, Keep, Task};
+use super::super::batch::{Batch, Found, Keep, Outcome, Task};
 use super::super::error::ExperimentError;
 use super::super::progress::progress;
-use super::reading::other_reading;
+use super::reading::OtherReading;
 use super::run::{Run, preamble};
-use crate::analysis::claims::{Judged, headline, judge};
+use crate::analysis::claims::{Judged, judge};
 use crate::analysis::conditions::{Conditions, baseline_estimates};
 use crate::analysis::measure::Evidence;
 use crate::analysis::published::{Experiment, figures};
@@ -25,7 +25,7 @@ use crate::pipeline::Condition;
 use crate::report::claims_table::{comparison, markdown, rows};
 use crate::report::figures::Figures;
 use crate::report::{page, plot};
-use crate::settings::{Settings, SettingsError};
+use crate::settings::Settings;
 use crate::stages::agent::Agent;
 use crate::stages::schema::Model;
 use crate::stages::simulate::{Resolution, Trajectory, simulate};
@@ -50,28 +50,31 @@ pub fn reproduce(run: &Run) -> Result<Finished, ExperimentError> {
     let mut folder = ResultFolder::new(run.out);
     folder.remove(made_anew())?;
     let checkpoints = Checkpoints::new(run.out, &(run.experiment, run.settings));
-    let (tasks, others) = (tasks(run), other_tasks(run)?);
-    let all = beside(&tasks, &others);
+    let tasks = tasks(run);
+    let other = OtherReading::of(run, &tasks);
+    let all = other.as_ref().map_or_else(|| tasks.clone(), |other| other.behind(&tasks));
     let bar = progress(Batch::length(&all), "movement".to_owned());
     let batch = Batch { out: run.out, checkpoints: &checkpoints, bar: &bar };
     let movements = movements(run)?;
-    let (mut found, other) = apart(&all, batch.one_by_one(&all)?);
+    let (mut found, by_other) = apart(&all, batch.one_by_one(&all)?)?;
     bar.finish_and_clear();
     for kept in found.iter_mut().filter_map(|found| found.kept.as_mut()) {
         folder.remember(std::mem::take(&mut kept.files));
     }
 
     let evidence = write_draws(run, &found, &mut folder)?;
-    let other = write_other_draws(run, &others, &other, &mut folder)?;
     write_figures(run, &tasks, &found, &movements, &evidence, &mut folder)?;
     let mut judged = judge(run.experiment, &evidence);
     add_single_bodies(run.experiment, &mut judged, &evidence_of_bodies(run, &found, &evidence));
-    if let Some(other) = other {
-        judged.insert(1, headline(run.experiment, &other));
-    }
     let resolution =
         found.iter().map(|found| found.resolution).fold(Resolution::default(), Resolution::worse);
-    let preamble = preamble(run, resolution);
+    let mut preamble = preamble(run, resolution);
+    if let Some(other) = &other {
+        let (records, headline) = other.judge(run, by_other);
+        folder.write_rows("other-reading.csv", &records)?;
+        judged.insert(1, headline);
+        preamble += &other.in_words();
+    }
     folder.write_rows("claims.csv", rows(&judged))?;
     folder.write_text("claims.md", &markdown(&preamble, &judged))?;
     folder.write_manifest(manifest(run, &preamble, &tasks, &found, &judged)?)?;
@@ -128,61 +131,12 @@ fn tasks(run: &Run) -> Vec<Task> {
     }
 }
 
-/// One task for each simulation: the headline's condition by the other reading of the paper; none if the run has not this
-/// condition.
-fn other_tasks(run: &Run) -> Result<Vec<Task>, SettingsError> {
-    let settings = other_reading(run.settings)?;
-    let (experiment, coordination) = (&settings.experiment, settings.motion.coordination);
-    let dimension = experiment.dimension;
-    let has = match run.experiment {
-        Experiment::Exp1 => experiment.dimensions.contains(&dimension),
-        Experiment::Exp2 => experiment.coordinations.contains(&coordination),
-    };
-    let task = |simulation| Task {
-        name: format!("other-reading/simulation-{simulation}"),
-        settings: settings.clone(),
-        simulation,
-        conditions: vec![Condition { model: Model::DpgmmLj, coordination, dimension }],
-        clustered: Vec::new(),
-        keep: Keep::Nothing,
-    };
-    Ok((1..=experiment.simulations).filter(|_| has).map(task).collect())
-}
-
-/// Puts each task of the other reading behind the one whose movement it shares.
-fn beside(tasks: &[Task], others: &[Task]) -> Vec<Task> {
-    let mut all = Vec::new();
-    for task in tasks {
-        all.push(task.clone());
-        let p = task.settings.motion.coordination;
-        let shares =
-            |other: &&Task| other.simulation == task.simulation && other.settings.motion.coordination == p;
-        all.extend(others.iter().find(shares).cloned());
-    }
-    all
-}
-
-/// What the tasks of the run found, and what those of the other reading did.
-fn apart(all: &[Task], found: Vec<Found>) -> (Vec<Found>, Vec<Found>) {
-    let pairs = all.iter().zip(found);
-    let (run, other): (Vec<_>, Vec<_>) = pairs.partition(|(task, _)| task.keep != Keep::Nothing);
-    let found = |pairs: Vec<(&Task, Found)>| pairs.into_iter().map(|(_, found)| found).collect();
-    (found(run), found(other))
-}
-
-/// Writes the draws of the other reading, if there are any, and returns them as evidence.
-fn write_other_draws(
-    run: &Run,
-    tasks: &[Task],
-    found: &[Found],
-    folder: &mut ResultFolder,
-) -> Result<Option<Evidence>, FileError> {
-    let Some(task) = tasks.first() else { return Ok(None) };
-    let records: Vec<_> = found.iter().flat_map(|found| &found.records).copied().collect();
-    folder.write_rows("other-reading.csv", &records)?;
-    let experiment = &run.settings.experiment;
-    let conditions = Conditions::new(records, experiment.simulations, experiment.seed);
-    Ok(Some(Evidence { conditions, baselines: Vec::new(), reading: task.settings.schema.sampler }))
+/// What the tasks of the run found, and what became of those of the other reading, which alone may fail.
+fn apart(all: &[Task], outcomes: Vec<Outcome>) -> Result<(Vec<Found>, Vec<Outcome>), ExperimentError> {
+    let (run, other): (Vec<_>, Vec<_>) =
+        all.iter().zip(outcomes).partition(|(task, _)| task.keep != Keep::Nothing);
+    let found = run.into_iter().map(|(_, outcome)| outcome.map_err(ExperimentError::Stage));
+    Ok((found.collect::<Result<_, _>>()?, other.into_iter().map(|(_, outcome)| outcome).collect()))
 }
 
 /// Writes all draws, and in experiment 1 all clusterings; returns the estimates over them.

@@ -117,13 +117,15 @@ impl Continuation {
     pub fn parse(text: &str, origin: &str, design: &Design) -> Result<Self, ExperimentError> {
         let continuation: Self =
             toml::from_str(text).map_err(|error| ExperimentError::design(origin, error))?;
-        match (1..=design.round.len()).contains(&continuation.round) {
-            true => Ok(continuation),
-            false => {
-                let message = format!("continues with round {}, which the design lacks", continuation.round);
-                Err(ExperimentError::design(origin, message))
-            }
+        let round = continuation.round;
+        if !(1..=design.round.len()).contains(&round) {
+            let message = format!("continues with round {round}, which the design lacks");
+            return Err(ExperimentError::design(origin, message));
         }
+        if continuation.start.is_empty() {
+            return Err(ExperimentError::design(origin, "names no candidate ([[start]]) to continue with"));
+        }
+        Ok(continuation)
     }
 }
 
@@ -137,6 +139,9 @@ impl Design {
         let design: Self = toml::from_str(text).map_err(|error| wrong(error.to_string()))?;
         if design.round.is_empty() || design.score.is_empty() {
             return Err(wrong("needs a [[round]] and a [[score]] at least".to_owned()));
+        }
+        if design.round.iter().any(|round| round.candidates == 0) {
+            return Err(wrong("has a [[round]] with candidates = 0; let each try one at least".to_owned()));
         }
         if design.draws.movements > 0 && design.factor.iter().any(|factor| factor.options.is_empty()) {
             return Err(wrong("has a factor without options".to_owned()));

@@ -129,7 +129,7 @@ struct Held(Vec<Vec<bool>>);
 
 impl Held {
     fn of(tried: &[Tried]) -> Self {
-        let stable = tried.iter().filter(|tried| tried.failures.is_empty() && tried.resolution.is_resolved());
+        let stable = tried.iter().filter(|tried| tried.is_resolved());
         let holds = |(judged, _): &(Judged, f64)| judged.verdict == Verdict::Reproduced;
         Self(stable.map(|tried| tried.terms.iter().map(holds).collect()).collect())
     }

@@ -67,6 +67,10 @@ const CREDITED: usize = 100;
 pub fn search(design: &Design, from: Option<Continuation>, out: &Path) -> Result<String, ExperimentError> {
     let first = from.as_ref().map_or(0, |from| from.round - 1);
     let mut candidates = from.map_or_else(|| design.all_candidates(), |from| from.start);
+    if candidates.is_empty() {
+        let message = "it has no candidates; add [draws] or a [[start]]";
+        return Err(ExperimentError::design("the design of the search", message));
+    }
     // Before hours are spent on those that come first.
     design.check(&candidates)?;
     let mut folder = ResultFolder::new(out);
@@ -84,10 +88,7 @@ pub fn search(design: &Design, from: Option<Continuation>, out: &Path) -> Result
             .map(|(candidate, (settings, outcome))| design.judge(candidate, settings, outcome))
             .collect();
         // Movements that the step resolves come first. Stable: of equal scores the earlier candidate stays ahead.
-        tried.sort_by(|a, b| {
-            let resolved = |tried: &Tried| tried.resolution.is_resolved() && tried.failures.is_empty();
-            resolved(b).cmp(&resolved(a)).then(b.score.total_cmp(&a.score))
-        });
+        tried.sort_by(|a, b| b.is_resolved().cmp(&a.is_resolved()).then(b.score.total_cmp(&a.score)));
         for (rank, tried) in tried.iter().enumerate() {
             scores.push(tried.score_row(at + 1, rank + 1));
             if rank < CREDITED {
@@ -108,9 +109,13 @@ pub fn search(design: &Design, from: Option<Continuation>, out: &Path) -> Result
     }
     let page = design.page(&rounds);
     folder.write_text("search.md", &page)?;
-    let best = &rounds.last().expect("there is a round").1[0].candidate;
-    let overlay = toml::to_string(&best.settings).expect("a table can be written");
-    folder.write_text("best.toml", &format!("# Candidate {}.\n{overlay}", best.name))?;
+    folder.remove(["best.toml".to_owned()])?;
+    let best = &rounds.last().expect("there is a round").1[0];
+    // What the step does not resolve cannot win.
+    if best.is_resolved() {
+        let overlay = toml::to_string(&best.candidate.settings).expect("a table can be written");
+        folder.write_text("best.toml", &format!("# Candidate {}.\n{overlay}", best.candidate.name))?;
+    }
     folder.write_manifest(Manifest::of_study("search", design.seed))?;
     Ok(page)
 }
@@ -132,7 +137,7 @@ impl Tried {
             terms: self.terms.len(),
             failures: self.failures.len(),
             failure: self.failures.first().map_or(String::new(), |failure| failure.reason.clone()),
-            resolved: self.resolution.is_resolved(),
+            resolved: self.is_resolved(),
             anchor_separation: self.resolution.anchor_separation,
             turn: self.resolution.turn,
             hold: self.holding().collect::<Vec<_>>().join(" "),

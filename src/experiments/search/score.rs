@@ -23,6 +23,13 @@ pub struct Tried {
     pub terms: Vec<(Judged, f64)>,
 }
 
+impl Tried {
+    /// Whether the physics step resolved all its movements.
+    pub fn is_resolved(&self) -> bool {
+        self.failures.is_empty() && self.resolution.is_resolved()
+    }
+}
+
 impl Design {
     /// A candidate's verdicts and score.
     pub fn judge(&self, candidate: Candidate, settings: &Settings, outcome: &Outcome) -> Tried {

@@ -118,7 +118,7 @@ fn a_claim_that_counts_draws_is_followed_by_its_best_draws() {
     );
     let [verdict, claim, published, reproduced, _, n, _, accepted, ..] = best.in_words();
     assert_eq!([&verdict, &published, &reproduced, &n, &accepted], ["extension", "", "100 %", "2", ""]);
-    assert!(claim.ends_with("d = 14: draw of highest log posterior"), "{claim}");
+    assert!(claim.ends_with("d = 14, as the equations say: draw of highest log posterior"), "{claim}");
 
     // Only claims that count draws have a second row.
     let of = |id| rows.iter().filter(|row| row.id == id).count();

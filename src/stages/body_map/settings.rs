@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::numerics::range::{Checked, check, count};
+use crate::numerics::range::{Checked, check};
 
 /// What is scaled.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -52,7 +52,7 @@ impl Map {
     /// The first setting that is outside its range.
     pub fn check(&self) -> Checked {
         check("map.starts", self.starts, (1..=1000).contains(&self.starts), "1 to 1000")?;
-        count("map.steps", self.steps)?;
+        check("map.steps", self.steps, (1..=100_000).contains(&self.steps), "1 to 100000")?;
         check("map.tolerance", self.tolerance, (0.0..=1e6).contains(&self.tolerance), "0 to 1000000")
     }
 }
