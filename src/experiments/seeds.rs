@@ -10,9 +10,13 @@ struct Seeded {
     seed: u64,
 }
 
-/// Whether neither the search for the default nor the study of its settings has used a master seed.
+/// Seeds by which settings were chosen before: that of the first search, and that of the movements which the second one
+/// tries.
+const FORMER: [u64; 2] = [1, 4];
+
+/// Whether neither a search for the default nor the study of its settings has used a master seed.
 pub fn is_held_out(seed: u64) -> bool {
-    !used().contains(&seed)
+    !used().contains(&seed) && !FORMER.contains(&seed)
 }
 
 /// The seeds of the search and of the study.
@@ -33,5 +37,6 @@ mod tests {
         assert!(is_held_out(Settings::paper().experiment.seed));
         let [search, study] = used();
         assert!(!is_held_out(search) && !is_held_out(study) && search != study);
+        assert!(FORMER.iter().all(|seed| !is_held_out(*seed) && !used().contains(seed)));
     }
 }
