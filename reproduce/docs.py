@@ -158,14 +158,12 @@ def experiment(folder, figure):
 
 
 def search(results):
-    names = ["search.md", "scores.csv", "credits.csv"]
     # The last round leaves no candidates, and one without a resolved candidate no winner.
-    for name in ["next.toml", "best.toml"]:
-        if (results / "search" / name).exists():
-            names.append(name)
-        else:
-            (SHOWN / "search" / name).unlink(missing_ok=True)
-    copy([results / "search" / name for name in names], SHOWN / "search")
+    optional = ["next.toml", "best.toml"]
+    there = [name for name in optional if (results / "search" / name).exists()]
+    copy([results / "search" / name for name in ["search.md", "scores.csv", "credits.csv", *there]], SHOWN / "search")
+    for name in set(optional) - set(there):
+        (SHOWN / "search" / name).unlink(missing_ok=True)
 
 
 def sensitivity(results):

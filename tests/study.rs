@@ -60,8 +60,8 @@ weight = 1
 slack = 0.5
 {}{}
 [[start]]
-name = \"stable\"
-settings = {{ quantise = {{ levels = 3 }} }}
+name = \"gentle\"
+settings = {{ quantise = {{ levels = 3 }}, motion = {{ stiffness = 0.07, damping = 0.03 }} }}
 [[start]]
 name = \"unstable\"
 settings = {{ motion = {{ stiffness = 1e5, damping = 1e5 }} }}
@@ -196,7 +196,8 @@ fn a_search_keeps_the_best_and_shows_which_claims_hold_together() {
     };
     assert_eq!(second(&files(&at("three"))), second(&one));
     let best = fs::read_to_string(at("one/best.toml")).unwrap();
-    assert!(best.contains("levels = 3") || best.contains("edge_weight"), "{best}");
+    // The others turn too far in a step, as the default does.
+    assert!(best.contains("levels = 3") && row("2,1,").contains("gentle"), "{best}");
     fs::write(at("short.toml"), format!("{best}\n[physics]\nduration = 10.0\n")).unwrap();
     succeed(folder.path(), "simulate --settings short.toml --out body");
 }

@@ -8,8 +8,11 @@ use super::score::Tried;
 use crate::analysis::claims::{Judged, Verdict};
 use crate::report::markdown::{number, row, rule};
 
-/// Candidates that are shown of each round but the last one, which is shown whole.
+/// Candidates that are shown of each round but the last one.
 const SHOWN: usize = 16;
+
+/// Candidates that are shown of the last round.
+const SHOWN_LAST: usize = 100;
 
 impl Design {
     /// The page of a search, given what was tried in each round.
@@ -22,7 +25,8 @@ impl Design {
             env!("BODYSCHEMA_REVISION")
         )];
         for (at, tried) in rounds {
-            let shown = if at + 1 == self.round.len() { tried.len() } else { tried.len().min(SHOWN) };
+            let most = if at + 1 == self.round.len() { SHOWN_LAST } else { SHOWN };
+            let shown = tried.len().min(most);
             let settings = flat(&self.round[*at].settings).join(", ");
             lines.push(format!("Round {}: {} candidates, {settings}\n", at + 1, tried.len()));
             lines.extend(self.table_of(&tried[..shown]));
@@ -152,7 +156,7 @@ impl Held {
         let within = |a: &[usize], b: &[usize]| a.len() < b.len() && a.iter().all(|claim| b.contains(claim));
         let maximal = all.iter().filter(|one| !all.iter().any(|other| within(one, other)));
         let mut sets: Vec<_> = maximal.map(|set| (set.clone(), self.together(set))).collect();
-        sets.sort_by(|a, b| (b.0.len(), b.1).cmp(&(a.0.len(), a.1)));
+        sets.sort_by_key(|(set, count)| std::cmp::Reverse((set.len(), *count)));
         sets.truncate(SETS);
         sets
     }
