@@ -8,7 +8,7 @@ use crate::numerics::rng::{Stream, stream};
 use crate::settings::Settings;
 use crate::stages::agent::Agent;
 use crate::stages::baselines::{Clustering, cluster};
-use crate::stages::body_map::{BodyMaps, ClassicalScaling, Improvement, MapError, MapOf, between_rows};
+use crate::stages::body_map::{BodyMaps, ClassicalScaling, Improvement, MapError, scaled};
 use crate::stages::distance::{Distances, information_metric};
 use crate::stages::evaluate::{parts, score};
 use crate::stages::quantise::{Quantise, quantise};
@@ -213,14 +213,13 @@ pub fn map_distances(
 ) -> Result<MappedBody, StageError> {
     let Metric { distances, constant_sensors } = metric.clone();
     let largest = dims.iter().copied().max().expect("dims must not be empty");
-    let rows = (settings.map.of == MapOf::Rows).then(|| between_rows(&distances));
-    let scaled = rows.as_ref().unwrap_or(&distances);
-    let scaling = ClassicalScaling::new(scaled, largest)?;
+    let scaled = scaled(&distances, settings.map.of);
+    let scaling = ClassicalScaling::new(&scaled, largest)?;
     let (maps, improvements) = if scaling.positive() == 0 {
         (None, Vec::new())
     } else {
         let random = |d: usize, start: usize| map_stream(settings.experiment.seed, simulation, d, start);
-        let (maps, improvements) = BodyMaps::new(scaled, &scaling, &settings.map, dims, &random)?;
+        let (maps, improvements) = BodyMaps::new(&scaled, &scaling, &settings.map, dims, &random)?;
         (Some(maps), improvements)
     };
     let facts = Facts {
@@ -230,6 +229,7 @@ pub fn map_distances(
         eigenvalues: scaling.eigenvalues,
         improvements,
     };
+    drop(scaled);
     let body = Body { truth: felt.truth.clone(), maps, resolution: felt.resolution };
     Ok(MappedBody { body, distances, facts })
 }

@@ -12,7 +12,8 @@ use bodyschema::stages::body_map::BodyMap;
 use bodyschema::stages::evaluate::{adjusted_rand_index, parts};
 use bodyschema::stages::mixture::{Gaussian, NormalInverseWishart, Points, SufficientStatistics};
 use bodyschema::stages::schema::{
-    Densities, Departures, Draw, EdgeWeight, Keep, Model, Prior, Sampler, Schema, Start, infer,
+    Densities, Departures, Draw, EdgeWeight, Keep, MeanCovariance, Model, Prior, Sampler, Schema, Start,
+    infer,
 };
 use bodyschema::stages::tree::Edge;
 use nalgebra::{DMatrix, DVector};
@@ -176,7 +177,7 @@ fn components_given_labels_and_joints_have_the_reference_s_parameters() {
             let mean = Case::centred(&points, &expected.mean);
             assert!((found.mean() - mean).abs().max() < 1e-9, "{}", case.name);
             let inverse = || found.scale().try_inverse().unwrap() / found.mean_weight();
-            let of_mean = components.has_inverse_scale().then(inverse);
+            let of_mean = (case.options.mean_covariance == MeanCovariance::InverseScale).then(inverse);
             assert_eq!(of_mean.is_some(), expected.mean_covariance.is_some(), "{}", case.name);
             if let (Some(found), Some(expected)) = (of_mean, &expected.mean_covariance) {
                 close(&found, &matrix(expected), &case.name);

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::measure::{Evidence, measure};
 use super::one_body::SingleBodies;
-use super::published::{Claim, Experiment, Measure, claims};
+use super::published::{Claim, Experiment, HEADLINE, Measure, claims};
 use super::statistics::Estimate;
 use crate::stages::schema::Sampler;
 
@@ -63,9 +63,10 @@ pub fn judge(experiment: Experiment, evidence: &Evidence) -> Vec<Judged> {
     claims.map(|claim| judge_one(claim, evidence, &best)).collect()
 }
 
-/// The headline: the first claim, whose rate the paper gives.
+/// The claim that the paper is cited for.
 pub fn headline(experiment: Experiment, evidence: &Evidence) -> Judged {
-    judge(experiment, evidence).swap_remove(0)
+    let mut judged = judge(experiment, evidence).into_iter();
+    judged.find(|judged| judged.claim.id == HEADLINE).expect("both experiments have it")
 }
 
 fn judge_one(claim: Claim, evidence: &Evidence, best: &Evidence) -> Judged {

@@ -26,8 +26,7 @@ impl Conditions {
     /// The draws of one simulation alone, from 1, as if there were no other.
     pub fn of_simulation(&self, simulation: usize) -> Self {
         let own = self.records.iter().filter(|record| record.simulation == simulation);
-        let records = own.map(|record| Record { simulation: 1, ..*record }).collect();
-        Self { records, simulations: 1, resamples: Resamples::new(1, &mut stream(0, 0, "bootstrap", 0)) }
+        Self::new(own.map(|record| Record { simulation: 1, ..*record }).collect(), 1, 0)
     }
 
     /// An extension of the paper's way of counting: of each condition and simulation only the draw of

@@ -22,7 +22,7 @@ pub fn add_single_bodies(experiment: Experiment, judged: &mut [Judged], bodies: 
         let share = |holds: &dyn Fn(&[Option<bool>]) -> bool| {
             rate(with_value.iter().filter(|seen| holds(seen)).count(), with_value.len())
         };
-        judged.single_bodies = (!bodies.is_empty()).then(|| SingleBodies {
+        judged.single_bodies = Some(SingleBodies {
             alone: share(&|seen| seen[at] == Some(true)),
             together: share(&|seen| seen.iter().all(|seen| *seen != Some(false))),
         });

@@ -103,14 +103,13 @@ impl Search {
         self.study.threads.apply()?;
         let (text, origin) = self.study.design((design::SEARCH, "reproduce/search.toml"))?;
         let (design, out) = (search::Design::parse(&text, &origin)?, &self.study.out);
-        let from = self.from.as_ref().map(|path| {
-            Ok::<_, anyhow::Error>(search::Continuation::parse(
-                &read_toml(path)?,
-                &path.display().to_string(),
-                &design,
-            )?)
-        });
-        let from = from.transpose()?;
+        let from = match &self.from {
+            None => None,
+            Some(path) => {
+                let (text, origin) = (read_toml(path)?, path.display().to_string());
+                Some(search::Continuation::parse(&text, &origin, &design)?)
+            }
+        };
         prepare_folder(out)?;
         say(search::search(&design, from, out)?)?;
         say(format!("All files are in {}.", out.display()))?;

@@ -15,15 +15,13 @@ use crate::numerics::rng::stream;
 use crate::pipeline::map_stream;
 use crate::settings::Settings;
 use crate::stages::agent::Agent;
-use crate::stages::body_map::{
-    BodyMap, BodyMaps, ClassicalScaling, Improvement, MapMethod, MapOf, between_rows,
-};
+use crate::stages::body_map::{BodyMap, BodyMaps, ClassicalScaling, Improvement, MapMethod, MapOf, scaled};
 use crate::stages::distance::information_metric;
 use crate::stages::evaluate::{Score, parts, score};
 use crate::stages::quantise::{Scheme, quantise};
 use crate::stages::schema::{Draw, EdgeWeight, Keep, Model, Sampler, Start, best, infer};
 use crate::stages::sense::sense;
-use crate::stages::simulate::{Resolution, simulate};
+use crate::stages::simulate::simulate;
 
 /// Stages 1 and 2: moves a body at random in a fluid and records the pressure on its sensors.
 ///
@@ -63,22 +61,9 @@ impl Simulate {
             experiment.seed,
             out.display()
         ))?;
-        say(resolution(trajectory.resolution))?;
+        say(trajectory.resolution.in_words("this movement"))?;
         Ok(ExitCode::SUCCESS)
     }
-}
-
-/// Whether the physics step resolved a movement, in words.
-fn resolution(resolution: Resolution) -> String {
-    let Resolution { anchor_separation, turn } = resolution;
-    format!(
-        "the step {} this movement: anchors come apart by at most {:.2} mm, a part turns by at most {turn:.3} of a turn \
-         in a step (limits: {:.0} mm and {})",
-        if resolution.is_resolved() { "resolves" } else { "does not resolve" },
-        1e3 * anchor_separation,
-        1e3 * Resolution::SEPARATION,
-        Resolution::TURN
-    )
 }
 
 /// Stages 3 and 4: turns pressures into symbols, and these into the information metric.
@@ -176,10 +161,8 @@ impl Map {
         set(&mut settings.map.starts, self.starts);
         settings.validate()?;
         ensure!(dims >= 1, "--dims is 0, but must be at least 1");
-        let mut distances = npy::read_distances(input)?;
-        if settings.map.of == MapOf::Rows {
-            distances = between_rows(&distances);
-        }
+        let distances = npy::read_distances(input)?;
+        let distances = scaled(&distances, settings.map.of);
         let in_file = || input.display().to_string();
         let scaling = ClassicalScaling::new(&distances, dims).with_context(in_file)?;
         let random = |d: usize, start: usize| map_stream(settings.experiment.seed, 1, d, start);

@@ -54,15 +54,9 @@ pub fn preamble(run: &Run, resolution: Resolution) -> String {
         1 => "Intervals are over the chains of this one simulation; another can differ by more.",
         _ => "Intervals are over simulations (bootstrap).",
     };
-    let Resolution { anchor_separation, turn } = resolution;
-    let resolved = format!(
-        "The physics step {} the movements: anchors come apart by at most {:.1} mm, a part turns by at most {turn:.2} of a \
-         turn in a step (limits: 10 mm and 0.1).",
-        if resolution.is_resolved() { "resolves" } else { "does not resolve" },
-        1e3 * anchor_separation,
-    );
+    let resolved = resolution.in_words("the movements");
     format!(
-        "{what}; {} simulation(s), {} chains of {} sweeps for each condition, seed {} ({seed}), revision {}.{caution} {resolved} {scope} \
+        "{what}; {} simulation(s), {} chains of {} sweeps for each condition, seed {} ({seed}), revision {}; {resolved}.{caution} {scope} \
          Rows marked extension count, of each simulation, only the draw of highest log posterior, which the paper does \
          not.",
         experiment.simulations,

@@ -133,7 +133,7 @@ impl Tried {
             rank,
             candidate: self.candidate.name.clone(),
             score: self.score,
-            satisfied: self.terms.iter().filter(|(judged, _)| judged.verdict == Verdict::Reproduced).count(),
+            satisfied: self.holding().count(),
             terms: self.terms.len(),
             failures: self.failures.len(),
             failure: self.failures.first().map_or(String::new(), |failure| failure.reason.clone()),

@@ -3,7 +3,7 @@
 //! In: [`Distances`](super::distance::Distances), M × M. Out: a [`BodyMap`], M × d, in the unit of the distances.
 //! The paper says "MDS" and cites Kruskal; which variant it ran is open. [Classical](ClassicalScaling) scaling is the
 //! default; metric and nonmetric scaling by [majorisation](smacof()) start from its map, or from
-//! [random](Descent) maps. Scaled are the distances themselves, or those [between their rows](between_rows).
+//! [random](Descent) maps. Scaled are the distances themselves, or those [between their rows](scaled).
 
 mod classical;
 mod coordinates;
@@ -17,6 +17,6 @@ pub use self::classical::{ClassicalScaling, MapError};
 pub use self::coordinates::BodyMap;
 pub use self::maps::BodyMaps;
 pub use self::random_starts::{Descended, Descent};
-pub use self::rows::between_rows;
+pub use self::rows::scaled;
 pub use self::settings::{Map, MapMethod, MapOf};
 pub use self::smacof::{Fit, Improvement, Majorisation, smacof};

@@ -1,14 +1,25 @@
 //! Take the rows of a matrix of distances as descriptions of the sensors, and compute the distances between them.
 
+use std::borrow::Cow;
+
 use super::coordinates::BodyMap;
+use super::settings::MapOf;
 use super::smacof::euclidean;
 use crate::stages::distance::Distances;
+
+/// What is scaled to make a body map: the distances, or those between their rows.
+pub fn scaled(distances: &Distances, of: MapOf) -> Cow<'_, Distances> {
+    match of {
+        MapOf::Distances => Cow::Borrowed(distances),
+        MapOf::Rows => Cow::Owned(between_rows(distances)),
+    }
+}
 
 /// Euclidean distances between the rows of a matrix of distances, M × M, in its unit: two sensors are near to each other
 /// where they are at like distances from all sensors.
 ///
 /// A program that hands a matrix of distances to scikit-learn's `MDS` without `dissimilarity="precomputed"` maps these.
-pub fn between_rows(distances: &Distances) -> Distances {
+fn between_rows(distances: &Distances) -> Distances {
     let sensors = distances.sensors;
     let rows = BodyMap { dims: sensors, coordinates: distances.values.clone() };
     Distances { sensors, values: euclidean(&rows) }

@@ -9,18 +9,20 @@ use std::f64::consts::PI;
 use nalgebra::{DMatrix, DVector};
 use rand::{Rng, RngExt};
 use rand_distr::{ChiSquared, StandardNormal};
+use serde::{Deserialize, Serialize};
 
 use super::augmented::Augmented;
 use super::gaussian::{Gaussian, Rounding, standard_normal};
 use super::points::SufficientStatistics;
 
-/// The covariance of μ given Σ.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum MeanSpread {
-    /// Σ / k.
-    Component,
+/// The covariance of μ.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum MeanCovariance {
     /// Ψ⁻¹ / k, which is no normal-inverse-Wishart: what the first author's code computes.
     InverseScale,
+    /// Σ / k, as in equations 10 and 17.
+    Component,
 }
 
 /// NIW(m, k, Ψ, ν): Σ ~ inverse-Wishart(Ψ, ν), μ ~ N(m, Σ / k).
@@ -102,11 +104,11 @@ impl NormalInverseWishart {
     /// B_ii² ~ χ²(ν − d + i) and normal above, Λ = U⁻¹ B Bᵀ U⁻ᵀ, so that Pᵀ = U⁻¹ B is upper triangular.
     /// μ = m + P⁻¹ z / √k with z standard normal, so that P μ = P m + z / √k.
     pub fn draw(&self, rng: &mut impl Rng) -> Gaussian {
-        self.draw_spread(MeanSpread::Component, rng)
+        self.draw_with(MeanCovariance::Component, rng)
     }
 
     /// Draws (μ, Σ) with another covariance of μ: μ = m + U⁻¹ z / √k has the covariance Ψ⁻¹ / k.
-    pub fn draw_spread(&self, mean_spread: MeanSpread, rng: &mut impl Rng) -> Gaussian {
+    pub fn draw_with(&self, mean_covariance: MeanCovariance, rng: &mut impl Rng) -> Gaussian {
         let dims = self.scale.dims;
         let mut columns = Augmented::zeros(dims);
         for i in 0..dims {
@@ -121,16 +123,16 @@ impl NormalInverseWishart {
         let mut rows = Augmented::zeros(dims);
         let spread = 1.0 / self.mean_weight().sqrt();
         let mut mean = self.mean();
-        if mean_spread == MeanSpread::InverseScale {
+        if mean_covariance == MeanCovariance::InverseScale {
             let mut offset = standard_normal(dims, rng) * spread;
             self.scale.solve_vector(offset.as_mut_slice());
             mean += offset;
         }
         for i in 0..dims {
             let row = rows.row_mut(i);
-            let mut shift = match mean_spread {
-                MeanSpread::Component => spread * rng.sample::<f64, _>(StandardNormal),
-                MeanSpread::InverseScale => 0.0,
+            let mut shift = match mean_covariance {
+                MeanCovariance::Component => spread * rng.sample::<f64, _>(StandardNormal),
+                MeanCovariance::InverseScale => 0.0,
             };
             for j in 0..=i {
                 row[j] = columns.row(j)[i];

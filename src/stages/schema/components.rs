@@ -3,10 +3,10 @@
 use nalgebra::{DMatrix, DVector};
 use rand::Rng;
 
-use super::departures::{Departures, EmptyComponents, MeanCovariance};
+use super::departures::{Departures, EmptyComponents};
 use super::error::InferenceError;
 use super::latent_tree::{Joint, LatentTree};
-use crate::stages::mixture::{Gaussian, MeanSpread, NormalInverseWishart, Rounding, SufficientStatistics};
+use crate::stages::mixture::{Gaussian, NormalInverseWishart, Rounding, SufficientStatistics};
 
 /// The conditional distributions of the components.
 #[derive(Debug)]
@@ -14,9 +14,7 @@ pub struct Components<'a> {
     prior: &'a NormalInverseWishart,
     /// What a component without sensors is drawn from, if that is not the prior.
     empty: Option<NormalInverseWishart>,
-    spread: MeanSpread,
-    joints_in_scatter: bool,
-    stale_joints: bool,
+    departures: &'a Departures,
 }
 
 impl<'a> Components<'a> {
@@ -24,22 +22,12 @@ impl<'a> Components<'a> {
     ///
     /// # Errors
     /// [`InferenceError::Rounding`] if the inverse of the prior's scale is not positive definite in floating point.
-    pub fn new(prior: &'a NormalInverseWishart, departures: &Departures) -> Result<Self, InferenceError> {
+    pub fn new(prior: &'a NormalInverseWishart, departures: &'a Departures) -> Result<Self, InferenceError> {
         let empty = match departures.empty_components {
             EmptyComponents::Prior => None,
             EmptyComponents::Inverse => Some(prior.with_inverse_scale().ok_or(Rounding)?),
         };
-        let spread = match departures.mean_covariance {
-            MeanCovariance::Component => MeanSpread::Component,
-            MeanCovariance::InverseScale => MeanSpread::InverseScale,
-        };
-        let (joints_in_scatter, stale_joints) = (departures.joints_in_scatter, departures.stale_joints);
-        Ok(Self { prior, empty, spread, joints_in_scatter, stale_joints })
-    }
-
-    /// Whether the covariance of a mean is Ψ⁻¹ / k instead of Σ / k.
-    pub fn has_inverse_scale(&self) -> bool {
-        self.spread == MeanSpread::InverseScale
+        Ok(Self { prior, empty, departures })
     }
 
     /// Draws all components.
@@ -53,7 +41,7 @@ impl<'a> Components<'a> {
         rng: &mut impl Rng,
     ) -> Result<Vec<Gaussian>, InferenceError> {
         let posteriors = self.posteriors(statistics, tree);
-        posteriors.map(|posterior| Ok(posterior?.draw_spread(self.spread, rng))).collect()
+        posteriors.map(|posterior| Ok(posterior?.draw_with(self.departures.mean_covariance, rng))).collect()
     }
 
     /// What each component is drawn from, given the sufficient statistics of its sensors.
@@ -65,7 +53,7 @@ impl<'a> Components<'a> {
         let joints = self.joints_of(statistics, tree);
         statistics.iter().zip(joints).map(|(sensors, joints)| match &self.empty {
             Some(empty) if sensors.count() == 0.0 => Ok(empty.clone()),
-            _ if self.joints_in_scatter || joints.is_empty() => {
+            _ if self.departures.joints_in_scatter || joints.is_empty() => {
                 let mut data = sensors.clone();
                 joints.iter().for_each(|joint| data.add(joint.as_slice()));
                 self.prior.posterior(&data)
@@ -84,9 +72,9 @@ impl<'a> Components<'a> {
         let occupied = |k: usize| statistics[k].count() > 0.0;
         for Joint { edge, position } in tree.joints.iter().chain(&tree.stale) {
             // A joint of components that were active when it was drawn.
-            if !self.stale_joints || occupied(edge.child) {
+            if !self.departures.stale_joints || occupied(edge.child) {
                 joints[edge.child].push(position);
-                if !self.stale_joints || occupied(edge.parent) {
+                if !self.departures.stale_joints || occupied(edge.parent) {
                     joints[edge.parent].push(position);
                 }
             }

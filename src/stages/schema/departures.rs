@@ -7,6 +7,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::numerics::range::{Checked, check, count};
+pub use crate::stages::mixture::MeanCovariance;
 
 /// Where Prim's algorithm starts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -27,16 +28,6 @@ pub enum Densities {
     Plain,
     /// As logarithms of densities, which do not underflow.
     Logarithmic,
-}
-
-/// The covariance of a component's mean.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum MeanCovariance {
-    /// Ψ⁻¹ / k, with Ψ the scale of the inverse Wishart that the component's covariance is drawn from.
-    InverseScale,
-    /// Σ / k, with Σ the component's covariance, as in equations 10 and 17.
-    Component,
 }
 
 /// The distribution of a component without sensors.

@@ -30,7 +30,7 @@ pub struct Chain<'a> {
     points: &'a Points,
     prior: &'a NormalInverseWishart,
     settings: &'a Schema,
-    departures: Departures,
+    departures: &'a Departures,
     components: Components<'a>,
     model: Model,
     /// z: the component of each point.
@@ -69,7 +69,7 @@ impl<'a> Chain<'a> {
             points,
             prior,
             settings,
-            components: Components::new(prior, &departures)?,
+            components: Components::new(prior, departures)?,
             departures,
             model,
             labels,
@@ -96,7 +96,7 @@ impl<'a> Chain<'a> {
         self.draw_labels(rng);
         self.update_statistics();
         let (statistics, smallest) = (&self.statistics, self.departures.smallest_part as f64);
-        self.tree.drop_inactive(&self.departures, |k| statistics[k].count() >= smallest);
+        self.tree.drop_inactive(self.departures, |k| statistics[k].count() >= smallest);
         self.draw_given_labels(rng)
     }
 
@@ -170,7 +170,7 @@ impl<'a> Chain<'a> {
             components: &self.gaussians,
             active: &self.active(),
             edge_weight: self.settings.edge_weight,
-            departures: &self.departures,
+            departures: self.departures,
         };
         self.tree.update(update, rng)
     }

@@ -133,10 +133,10 @@ pub struct Schema {
 
 impl Schema {
     /// How the sampler departs from the equations.
-    pub fn departures(&self) -> Departures {
+    pub fn departures(&self) -> &Departures {
         match self.sampler {
-            Sampler::Equations => Departures::NONE,
-            Sampler::AuthorsCode => self.authors.clone(),
+            Sampler::Equations => &Departures::NONE,
+            Sampler::AuthorsCode => &self.authors,
         }
     }
 

@@ -44,6 +44,19 @@ impl Resolution {
         self.anchor_separation <= Self::SEPARATION && self.turn <= Self::TURN
     }
 
+    /// Whether the step resolves `what`, and how well, in words.
+    pub fn in_words(&self, what: &str) -> String {
+        format!(
+            "the physics step {} {what}: anchors come apart by at most {:.2} mm, a part turns by at most {:.3} of a turn \
+             in a step (limits: {:.0} mm and {})",
+            if self.is_resolved() { "resolves" } else { "does not resolve" },
+            1e3 * self.anchor_separation,
+            self.turn,
+            1e3 * Self::SEPARATION,
+            Self::TURN
+        )
+    }
+
     /// The worse of two in each respect.
     #[must_use]
     pub fn worse(self, other: Self) -> Self {

@@ -57,6 +57,8 @@ pub struct World {
     steps: u64,
     /// Fastest rotation that is not called unstable, rad/s.
     fastest: f64,
+    /// Square of the fastest part's rotation after the last step, (rad/s)².
+    rotation_squared: f64,
     /// Whether the engine gave up in a step, after which the world may not be touched.
     failed: bool,
 }
@@ -168,6 +170,7 @@ impl World {
                 step: physics.step,
                 steps: 0,
                 fastest: physics.turn_limit * TAU / physics.step,
+                rotation_squared: 0.0,
                 failed: false,
             };
             for joint in 0..world.joints.len() {
@@ -192,11 +195,14 @@ impl World {
             self.failed = true;
             return Err(unstable(format!("the physics engine gave up ({})", last_message())));
         }
+        self.rotation_squared = 0.0;
         for part in 0..self.bodies.len() {
+            let squares = |velocity: Vector3| velocity.iter().map(|x| x * x).sum::<f64>();
             let (linear, angular) = self.velocity(part);
+            let (linear, angular) = (squares(linear), squares(angular));
+            self.rotation_squared = self.rotation_squared.max(angular);
             // No real motion of such bodies comes near a kilometre a second.
-            for (velocity, limit, unit) in [(angular, self.fastest, "rad/s"), (linear, 1e3, "m/s")] {
-                let squared: f64 = velocity.iter().map(|x| x * x).sum();
+            for (squared, limit, unit) in [(angular, self.fastest, "rad/s"), (linear, 1e3, "m/s")] {
                 if squared.is_nan() || squared >= limit * limit {
                     return Err(unstable(format!("part {part} reached {:.3e} {unit}", squared.sqrt())));
                 }
@@ -292,10 +298,9 @@ impl World {
         self.joints.iter().map(separation).fold(0.0, f64::max)
     }
 
-    /// How far the fastest part turns in a step at its present rate, in turns.
+    /// How far the fastest part turns in a step at its rate after the last one, in turns.
     pub fn turn(&self) -> f64 {
-        let squared = |part: usize| self.velocity(part).1.iter().map(|x| x * x).sum::<f64>();
-        (0..self.bodies.len()).map(squared).fold(0.0, f64::max).sqrt() * self.step / TAU
+        self.rotation_squared.sqrt() * self.step / TAU
     }
 }
 

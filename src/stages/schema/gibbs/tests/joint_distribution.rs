@@ -95,7 +95,7 @@ fn sweep(
         points,
         prior,
         settings,
-        departures: Departures::NONE,
+        departures: &Departures::NONE,
         components: Components::new(prior, &Departures::NONE).unwrap(),
         model: Model::DpgmmLj,
         labels: state.labels,
