@@ -5,7 +5,9 @@
 //! raw stress over Σ ‖x_i‖ is hardly less than that of the step before. Nothing is rescaled. Of all starts, the map of
 //! least raw stress is kept.
 //!
-//! A step keeps no matrix but the distances: distances within the map are made and used a few at a time.
+//! A step computes each pair of points once, for both: the pairs of two blocks of points make a tile.
+
+use std::array::from_fn;
 
 use rand::{Rng, RngExt};
 use rayon::prelude::*;
@@ -14,23 +16,33 @@ use super::coordinates::BodyMap;
 use crate::numerics::simd::vectorised;
 use crate::stages::distance::Distances;
 
-/// Points that are computed side by side.
-const LANES: usize = 8;
+/// Points of a block.
+const BLOCK: usize = 8;
 /// What stands for a distance of 0 between two points of the map, in the unit of the distances.
 const COINCIDENT: f64 = 1e-5;
-/// Rows of the matrix that a thread takes at a time.
-const ROWS: usize = 32;
+/// Coordinates whose sums the registers hold.
+const COORDINATES: usize = 4;
+/// Shares of a step, each with sums of its own: threads may take one each.
+const SHARES: usize = 8;
 
-/// A number for each of a few points.
-type Lanes = [f64; LANES];
+/// A number for each point of a block.
+type Lanes = [f64; BLOCK];
+/// A number for each pair of two blocks: by rows, one for each point of the first.
+type Tile = [Lanes; BLOCK];
 
 /// A map on its way from a random start to less stress.
 #[derive(Debug)]
 pub struct Descent<'a> {
     distances: &'a Distances,
+    /// The distances of each block with itself and with all that follow, 0 where the last block has no point.
+    tiles: Vec<Tile>,
     dims: usize,
-    /// ⌈n / LANES⌉ × d: coordinate k of a few points; the last ones are padded by 0.
-    blocks: Vec<Lanes>,
+    /// Rows of a block: d coordinates, rows of 0 up to a multiple of COORDINATES, and a last one of 1 for each point.
+    rows: usize,
+    /// ⌈n / BLOCK⌉ × rows. All numbers are 0 where the last block has no point.
+    points: Vec<Lanes>,
+    /// What each share of a step sums up.
+    shares: Vec<Sums>,
 }
 
 /// Where a descent ended.
@@ -53,14 +65,15 @@ impl<'a> Descent<'a> {
 
     /// Begins at a map of as many points as the distances have.
     pub fn new(distances: &'a Distances, map: &BodyMap) -> Self {
-        let dims = map.dims;
-        let mut blocks = vec![[0.0; LANES]; distances.sensors.div_ceil(LANES) * dims];
-        for (i, row) in map.coordinates.chunks_exact(dims).enumerate() {
-            for (k, x) in row.iter().enumerate() {
-                blocks[i / LANES * dims + k][i % LANES] = *x;
-            }
+        let (dims, rows) = (map.dims, (map.dims + 1).next_multiple_of(COORDINATES));
+        let mut points = vec![[0.0; BLOCK]; distances.sensors.div_ceil(BLOCK) * rows];
+        for (i, coordinates) in map.coordinates.chunks_exact(dims).enumerate() {
+            let block = &mut points[i / BLOCK * rows..][..rows];
+            coordinates.iter().zip(&mut *block).for_each(|(x, row)| row[i % BLOCK] = *x);
+            block[rows - 1][i % BLOCK] = 1.0;
         }
-        Self { distances, dims, blocks }
+        let shares = (0..SHARES).map(|_| Sums::zeros(points.len())).collect();
+        Self { distances, tiles: tiles(distances), dims, rows, points, shares }
     }
 
     /// Steps down until a step of at most `steps` lowers raw stress over Σ ‖x_i‖ by less than `tolerance`.
@@ -82,31 +95,39 @@ impl<'a> Descent<'a> {
     /// Moves every point by the Guttman transform; returns raw stress, the sum over pairs of (distance − distance within
     /// the map)², as it was before.
     pub fn step(&mut self) -> f64 {
-        let (n, dims) = (self.distances.sensors, self.dims);
-        let mut moved = vec![0.0; n * dims];
-        let rows = moved.par_chunks_mut(ROWS * dims).enumerate().map(|(at, moved)| {
-            let mut stress = 0.0;
-            let mut row = Row::new(dims);
-            for (offset, moved) in moved.chunks_exact_mut(dims).enumerate() {
-                let i = at * ROWS + offset;
-                let own: Vec<f64> = (0..dims).map(|k| self.coordinate(i, k)).collect();
-                let distances = &self.distances.values[i * n..][..n];
-                vectorised(
-                    #[inline(always)]
-                    || row.sum(&own, distances, &self.blocks),
-                );
-                stress += row.finish(&own, n, moved);
+        let (tiles, points, rows) = (&self.tiles, &self.points, self.rows);
+        let (blocks, dims) = (points.len() / rows, self.dims);
+        self.shares.par_iter_mut().enumerate().for_each(|(share, sums)| {
+            sums.clear();
+            // Later blocks have fewer tiles: every other turn is in the opposite order.
+            for turn in 0..blocks.div_ceil(SHARES) {
+                let block = turn * SHARES + if turn % 2 == 0 { share } else { SHARES - 1 - share };
+                if block < blocks {
+                    let tiles = &tiles[first_tile(block, blocks)..first_tile(block + 1, blocks)];
+                    vectorised(
+                        #[inline(always)]
+                        || sums.add_tiles(tiles, points, rows, dims, block),
+                    );
+                }
             }
-            stress
         });
-        // Summed in the order of the rows, so that the number of threads does not change a bit.
-        let stress: Vec<f64> = rows.collect();
-        self.blocks = Self::new(self.distances, &BodyMap { dims, coordinates: moved }).blocks;
-        0.5 * stress.iter().sum::<f64>()
+        // In the order of the shares, so that the number of threads does not change a bit.
+        let (sums, shares) = self.shares.split_first_mut().expect("there is more than one");
+        shares.iter().for_each(|share| sums.add(share));
+        let n = self.distances.sensors as f64;
+        for (points, pulls) in self.points.chunks_exact_mut(rows).zip(sums.pulls.chunks_exact(rows)) {
+            let ratios = pulls[rows - 1];
+            for (x, pull) in points.iter_mut().zip(pulls).take(self.dims) {
+                for lane in 0..BLOCK {
+                    x[lane] = (ratios[lane] * x[lane] - pull[lane]) / n;
+                }
+            }
+        }
+        sums.stress
     }
 
     fn coordinate(&self, i: usize, k: usize) -> f64 {
-        self.blocks[i / LANES * self.dims + k][i % LANES]
+        self.points[i / BLOCK * self.rows + k][i % BLOCK]
     }
 
     /// Σ ‖x_i‖.
@@ -123,82 +144,117 @@ impl<'a> Descent<'a> {
     }
 }
 
-/// Sums over all points j of one row i of the transform, a few points side by side.
-struct Row {
-    /// Σ_j (D_ij / d_ij) x_jk for each k.
+/// Sums of the transform over some tiles.
+#[derive(Debug)]
+struct Sums {
+    /// Σ_j (D_ij / d_ij) x_jk of each point i, laid out as the points are; where they have 1, Σ_j D_ij / d_ij.
     pulls: Vec<Lanes>,
-    /// Σ_j D_ij / d_ij.
-    ratios: Lanes,
-    /// Σ_j (D_ij − d_ij)².
-    squares: Lanes,
+    /// Σ (D_ij − d_ij)² over pairs.
+    stress: f64,
 }
 
-impl Row {
-    fn new(dims: usize) -> Self {
-        Self { pulls: vec![[0.0; LANES]; dims], ratios: [0.0; LANES], squares: [0.0; LANES] }
+impl Sums {
+    fn zeros(length: usize) -> Self {
+        Self { pulls: vec![[0.0; BLOCK]; length], stress: 0.0 }
     }
 
-    #[inline(always)]
-    fn sum(&mut self, own: &[f64], distances: &[f64], blocks: &[Lanes]) {
-        self.pulls.fill([0.0; LANES]);
-        (self.ratios, self.squares) = ([0.0; LANES], [0.0; LANES]);
-        let mut whole = distances.chunks_exact(LANES);
-        let mut blocks = blocks.chunks_exact(own.len());
-        for (distances, block) in whole.by_ref().zip(blocks.by_ref()) {
-            self.add(own, distances.try_into().expect("a whole chunk"), &[1.0; LANES], block);
-        }
-        if let Some(block) = blocks.next() {
-            let rest = whole.remainder();
-            let (mut distances, mut real) = ([0.0; LANES], [0.0; LANES]);
-            distances[..rest.len()].copy_from_slice(rest);
-            real[..rest.len()].fill(1.0);
-            self.add(own, &distances, &real, block);
-        }
+    fn clear(&mut self) {
+        self.pulls.fill([0.0; BLOCK]);
+        self.stress = 0.0;
     }
 
-    /// Adds a few points; `real` is 0 for padding.
+    fn add(&mut self, other: &Self) {
+        for (sum, term) in self.pulls.iter_mut().zip(&other.pulls) {
+            sum.iter_mut().zip(term).for_each(|(sum, term)| *sum += term);
+        }
+        self.stress += other.stress;
+    }
+
+    /// Adds the pairs of one block with itself and with all that follow, whose distances `tiles` holds.
     #[inline(always)]
-    fn add(&mut self, own: &[f64], distances: &Lanes, real: &Lanes, block: &[Lanes]) {
-        let mut squared = [0.0; LANES];
-        for (own, x) in own.iter().zip(block) {
-            for (squared, x) in squared.iter_mut().zip(x) {
-                *squared = (own - x).mul_add(own - x, *squared);
+    fn add_tiles(&mut self, tiles: &[Tile], points: &[Lanes], rows: usize, dims: usize, block: usize) {
+        let first = &points[block * rows..][..rows];
+        for (offset, tile) in tiles.iter().enumerate() {
+            let second = &points[(block + offset) * rows..][..rows];
+            let (ratios, stress) = compare(tile, dims, first, second);
+            let mut transposed = [[0.0; BLOCK]; BLOCK];
+            for i in 0..BLOCK {
+                for j in 0..BLOCK {
+                    transposed[j][i] = ratios[i][j];
+                }
+            }
+            pull(&mut self.pulls[block * rows..][..rows], &transposed, second);
+            if offset == 0 {
+                // The tile has each pair twice.
+                self.stress += 0.5 * stress;
+            } else {
+                pull(&mut self.pulls[(block + offset) * rows..][..rows], &ratios, first);
+                self.stress += stress;
             }
         }
-        let within = squared.map(f64::sqrt);
-        let mut off = [0.0; LANES];
-        for (((off, real), distance), within) in off.iter_mut().zip(real).zip(distances).zip(&within) {
-            *off = real * (distance - within);
-        }
-        let mut ratios = [0.0; LANES];
-        for ((ratio, distance), within) in ratios.iter_mut().zip(distances).zip(&within) {
-            *ratio = distance / if *within > 0.0 { *within } else { COINCIDENT };
-        }
-        multiply_add(&mut self.squares, &off, &off);
-        multiply_add(&mut self.ratios, &ratios, &[1.0; LANES]);
-        for (pull, x) in self.pulls.iter_mut().zip(block) {
-            // By way of copies, which the compiler knows not to overlap.
-            let (mut sums, x) = (*pull, *x);
-            multiply_add(&mut sums, &ratios, &x);
-            *pull = sums;
-        }
-    }
-
-    /// Where point i moves; returns its part of the sum of squares.
-    fn finish(&self, own: &[f64], n: usize, moved: &mut [f64]) -> f64 {
-        let ratio: f64 = self.ratios.iter().sum();
-        for ((moved, own), pull) in moved.iter_mut().zip(own).zip(&self.pulls) {
-            *moved = (ratio * own - pull.iter().sum::<f64>()) / n as f64;
-        }
-        self.squares.iter().sum()
     }
 }
 
-/// sums += factors × numbers, lane by lane.
+/// The tiles of each block with itself and with all that follow.
+fn tiles(distances: &Distances) -> Vec<Tile> {
+    let n = distances.sensors;
+    let get = |i: usize, j: usize| if i < n && j < n { distances.get(i, j) } else { 0.0 };
+    let tile = |i: usize, j: usize| from_fn(|a| from_fn(|b| get(i + a, j + b)));
+    let starts = || (0..n).step_by(BLOCK);
+    starts().flat_map(|i| starts().filter(move |j| *j >= i).map(move |j| tile(i, j))).collect()
+}
+
+/// Where the tiles of a block begin.
+fn first_tile(block: usize, blocks: usize) -> usize {
+    block * (2 * blocks + 1 - block) / 2
+}
+
+/// D / d of all pairs of two blocks, and the sum of their (D − d)².
 #[inline(always)]
-fn multiply_add(sums: &mut Lanes, factors: &Lanes, numbers: &Lanes) {
-    for ((sum, factor), number) in sums.iter_mut().zip(factors).zip(numbers) {
-        *sum = factor.mul_add(*number, *sum);
+fn compare(tile: &Tile, dims: usize, first: &[Lanes], second: &[Lanes]) -> (Tile, f64) {
+    /// Points of the first block whose sums the registers hold.
+    const POINTS: usize = 4;
+    let (real, others) = (first[first.len() - 1], second[second.len() - 1]);
+    let mut ratios = [[0.0; BLOCK]; BLOCK];
+    let mut squares = [0.0; BLOCK];
+    for top in (0..BLOCK).step_by(POINTS) {
+        let mut squared = [[0.0; BLOCK]; POINTS];
+        for (own, x) in first[..dims].iter().zip(&second[..dims]) {
+            // A copy, which the compiler knows not to overlap with anything.
+            let x = *x;
+            for (squared, own) in squared.iter_mut().zip(&own[top..top + POINTS]) {
+                for (squared, x) in squared.iter_mut().zip(&x) {
+                    *squared = (own - x).mul_add(own - x, *squared);
+                }
+            }
+        }
+        for (i, squared) in squared.iter().enumerate() {
+            for j in 0..BLOCK {
+                let (distance, within) = (tile[top + i][j], squared[j].sqrt());
+                let off = real[top + i] * others[j] * (distance - within);
+                squares[j] = off.mul_add(off, squares[j]);
+                ratios[top + i][j] = distance / if within > 0.0 { within } else { COINCIDENT };
+            }
+        }
+    }
+    (ratios, squares.iter().sum())
+}
+
+/// Adds Σ_i ratios[i][j] x_i to the sums of each point j, for all coordinates.
+#[inline(always)]
+fn pull(sums: &mut [Lanes], ratios: &Tile, points: &[Lanes]) {
+    let sums = sums.as_chunks_mut::<COORDINATES>().0;
+    for (sums, points) in sums.iter_mut().zip(points.as_chunks::<COORDINATES>().0) {
+        // On a copy, which the compiler knows not to overlap with anything.
+        let mut own = *sums;
+        for (i, ratios) in ratios.iter().enumerate() {
+            for k in 0..COORDINATES {
+                for j in 0..BLOCK {
+                    own[k][j] = ratios[j].mul_add(points[k][i], own[k][j]);
+                }
+            }
+        }
+        *sums = own;
     }
 }
 
