@@ -2,8 +2,9 @@
 
 use std::path::Path;
 
-use super::batch::{Batch, Found, Keep, Task};
+use super::batch::{Batch, Found};
 use super::progress::progress;
+use super::task::{Keep, Task};
 use crate::analysis::conditions::Conditions;
 use crate::files::checkpoint::Checkpoints;
 use crate::files::{FileError, sha256_of_text};

@@ -1,5 +1,6 @@
 //! Run the paper's experiments, the search for a default, and the study of what the paper leaves open.
 
+mod ahead;
 mod batch;
 mod body_files;
 mod configurations;
@@ -11,4 +12,5 @@ pub mod search;
 mod seeds;
 pub mod sensitivity;
 mod shared;
+mod task;
 pub mod verify;

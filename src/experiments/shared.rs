@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::pipeline::{FeltBody, MappedBody, Metric, feel_movement, map_distances, quantise_felt, wander};
+use crate::pipeline::{FeltBody, MappedBody, Metric, feel_movement, map_distances, quantise_felt};
 use crate::settings::Settings;
 use crate::stages::simulate::Trajectory;
 
@@ -65,7 +65,7 @@ pub struct Shared {
 }
 
 impl Shared {
-    /// Stages 1 to 5. Calls `tick` once for each sample of a movement that is simulated.
+    /// Stages 1 to 5. Calls `simulate` if it needs another movement than the last.
     ///
     /// # Errors
     /// Why a stage failed.
@@ -74,12 +74,10 @@ impl Shared {
         settings: &Settings,
         simulation: usize,
         dims: &[usize],
-        tick: &dyn Fn(),
+        simulate: impl FnOnce() -> Result<Trajectory, String>,
     ) -> Result<MappedBody, String> {
         let keys = Keys::of(settings, simulation, dims);
-        let movement = self
-            .movement
-            .get(keys.movement, || wander(settings, simulation, tick).map_err(|error| error.to_string()));
+        let movement = self.movement.get(keys.movement, simulate);
         let trajectory = movement.as_ref().map_err(String::clone)?;
         let felt = self.felt.get(keys.pressures, || feel_movement(trajectory, settings));
         let metric = self.metric.get(keys.distances, || quantise_felt(felt, &settings.quantise));

@@ -5,9 +5,10 @@ use std::time::{Instant, SystemTime};
 
 use serde_json::{Value, json};
 
-use super::super::batch::{Batch, Found, Keep, Outcome, Task};
+use super::super::batch::{Batch, Found, Outcome};
 use super::super::error::ExperimentError;
 use super::super::progress::progress;
+use super::super::task::{Keep, Task};
 use super::reading::OtherReading;
 use super::run::{Run, preamble};
 use crate::analysis::claims::{Judged, judge};

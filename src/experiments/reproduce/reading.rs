@@ -1,6 +1,7 @@
 //! Draw the headline by the other reading of the paper as well, on the same bodies.
 
-use super::super::batch::{Keep, Outcome, Task};
+use super::super::batch::Outcome;
+use super::super::task::{Keep, Task};
 use super::run::Run;
 use crate::analysis::claims::{Judged, headline};
 use crate::analysis::conditions::Conditions;
