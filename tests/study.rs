@@ -75,6 +75,37 @@ options = [{{ schema = {{ edge_weight = \"collapsed\" }} }}]
     )
 }
 
+fn comparison_design() -> String {
+    format!(
+        "title = \"Levels\"
+about = \"How many levels.\"
+seed = 1
+[settings]
+{SMALL}
+[[claim]]
+id = \"number-of-parts\"
+experiment = \"exp1\"
+label = \"parts\"
+[[claim]]
+id = \"best-coordination\"
+experiment = \"exp2\"
+label = \"best p\"
+[[configuration]]
+name = \"gentle\"
+settings = {{ motion = {{ stiffness = 0.07, damping = 0.03 }} }}
+[[configuration]]
+name = \"three\"
+settings = {{ quantise = {{ levels = 3 }} }}
+[[configuration]]
+name = \"the same\"
+settings = {{}}
+[[configuration]]
+name = \"unstable\"
+settings = {{ motion = {{ stiffness = 1e5, damping = 1e5 }} }}
+"
+    )
+}
+
 fn bodyschema(folder: &Path, arguments: &str) -> Output {
     Command::new(env!("CARGO_BIN_EXE_bodyschema"))
         .current_dir(folder)
@@ -203,6 +234,42 @@ fn a_search_keeps_the_best_and_shows_which_claims_hold_together() {
 }
 
 #[test]
+fn a_comparison_says_how_far_each_claim_is_from_the_first_configuration_s() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    fs::write(at("design.toml"), comparison_design()).unwrap();
+    succeed(folder.path(), "compare --design design.toml --jobs 1 --out one");
+    let one = files(&at("one"));
+    let expected =
+        ["comparison.csv", "comparison.md", "design.toml", "figures/claims-1.svg", "manifest.json"];
+    assert_eq!(one.keys().map(String::as_str).collect::<Vec<_>>(), expected);
+    let mut table = csv::Reader::from_path(at("one/comparison.csv")).unwrap();
+    let rows: Vec<BTreeMap<String, String>> = table.deserialize().map(Result::unwrap).collect();
+    assert_eq!(rows.len(), 4 * 2);
+    let parts = |name: &str| {
+        rows.iter().find(|row| row["configuration"] == name && row["claim"] == "number-of-parts").unwrap()
+    };
+    let number = |name: &str, column: &str| parts(name)[column].parse::<f64>().unwrap();
+    // What is the same differs by nothing, whatever the simulations that are drawn.
+    assert_eq!(["change", "change_low", "change_high"].map(|column| number("the same", column)), [0.0; 3]);
+    let change = number("three", "value") - number("gentle", "value");
+    assert!((number("three", "change") - change).abs() < 1e-12 && change != 0.0);
+    assert!(number("three", "change_low") <= change && change <= number("three", "change_high"));
+    assert!(parts("gentle")["change"].is_empty() && parts("gentle")["resolved"] == "true");
+    assert!(parts("unstable")["value"].is_empty() && parts("unstable")["failed"] == "4");
+    let page = String::from_utf8(one["comparison.md"].clone()).unwrap();
+    assert!(page.contains("4 simulations failed: ") && !page.contains("NaN"), "{page}");
+
+    succeed(folder.path(), "compare --design design.toml --jobs 3 --out two");
+    assert_eq!(files(&at("two")), one);
+    fs::remove_file(at("one/comparison.md")).unwrap();
+    fs::remove_dir_all(at("one/figures")).unwrap();
+    succeed(folder.path(), "plot one");
+    assert_eq!(files(&at("one")), one);
+    succeed(folder.path(), "verify one");
+}
+
+#[test]
 fn what_is_no_design_is_refused_in_one_line() {
     let folder = tempfile::tempdir().unwrap();
     let refused = |command: &str, design: String, expected: &str| {
@@ -225,6 +292,11 @@ fn what_is_no_design_is_refused_in_one_line() {
     refused("search", search.replace("number-of-parts", "beauty"), "no claim `beauty`");
     refused("search", search.replace("slack = 5", "slack = 0"), "must be positive");
     refused("search", search.replace("1e5", "-1.0"), "motion.stiffness");
+    let comparison = comparison_design();
+    refused("compare", search.clone(), "design.toml: ");
+    refused("compare", comparison.replace("\"three\"", "\"gentle\""), "two configurations `gentle`");
+    refused("compare", comparison.replace("number-of-parts", "beauty"), "names `beauty` of exp1");
+    refused("compare", comparison.replace("levels = 3", "levels = 1"), "quantise.levels");
     let output = bodyschema(folder.path(), "search --design nothing.toml --out out");
     assert_eq!(output.status.code(), Some(2));
     assert!(String::from_utf8(output.stderr).unwrap().contains("nothing.toml"));

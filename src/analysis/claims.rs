@@ -70,12 +70,18 @@ pub fn headline(experiment: Experiment, evidence: &Evidence) -> Judged {
 }
 
 fn judge_one(claim: Claim, evidence: &Evidence, best: &Evidence) -> Judged {
-    let (reproduced, place, verdict) = worst(&claim, &measure(&claim.measure, evidence));
+    let (reproduced, place, verdict) = judge_claim(&claim, evidence);
     let best = claim.measure.counts_draws().then(|| {
-        let (estimate, place, _) = worst(&claim, &measure(&claim.measure, best));
+        let (estimate, place, _) = judge_claim(&claim, best);
         (estimate, place)
     });
     Judged { claim, reproduced, place, verdict, best, reading: evidence.reading, single_bodies: None }
+}
+
+/// Of all values that a claim is about, the one that lies farthest towards the outside of its range, where it was found,
+/// and the verdict.
+pub fn judge_claim(claim: &Claim, evidence: &Evidence) -> (Estimate, String, Verdict) {
+    worst(claim, &measure(&claim.measure, evidence))
 }
 
 /// Of all values that a claim is about, the one that lies farthest towards the outside of its range.

@@ -23,10 +23,20 @@ impl Conditions {
         Self { records, simulations, resamples }
     }
 
-    /// The draws of one simulation alone, from 1, as if there were no other.
-    pub fn of_simulation(&self, simulation: usize) -> Self {
-        let own = self.records.iter().filter(|record| record.simulation == simulation);
-        Self::new(own.map(|record| Record { simulation: 1, ..*record }).collect(), 1, 0)
+    /// Number of simulations.
+    pub fn simulations(&self) -> usize {
+        self.simulations
+    }
+
+    /// The draws of these simulations, counted from 1, each as often as it is named, as if all were of one simulation and
+    /// there were no other.
+    pub fn redrawn(&self, simulations: &[usize]) -> Self {
+        let of = |simulation: &usize| {
+            let simulation = *simulation;
+            self.records.iter().filter(move |record| record.simulation == simulation)
+        };
+        let records = simulations.iter().flat_map(of).map(|record| Record { simulation: 1, ..*record });
+        Self::new(records.collect(), 1, 0)
     }
 
     /// An extension of the paper's way of counting: of each condition and simulation only the draw of

@@ -20,6 +20,14 @@ pub struct Evidence {
     pub reading: Sampler,
 }
 
+impl Evidence {
+    /// The draws of these simulations, each as often as it is named, as those of one.
+    pub fn redrawn(&self, simulations: &[usize]) -> Self {
+        let (baselines, reading) = (self.baselines.clone(), self.reading);
+        Self { conditions: self.conditions.redrawn(simulations), baselines, reading }
+    }
+}
+
 /// A value, and what tells its place from those of the claim's other values.
 type Placed = (String, Estimate);
 

@@ -5,6 +5,7 @@ pub mod claims;
 pub mod conditions;
 pub mod measure;
 pub mod one_body;
+pub mod paired;
 pub mod published;
 pub mod single_bodies;
 pub mod statistics;

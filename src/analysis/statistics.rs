@@ -133,9 +133,9 @@ impl Resamples {
         let mut means: Vec<f64> =
             self.multiplicities.iter().filter_map(|row| resampled(row, groups)).collect();
         means.sort_by(f64::total_cmp);
-        let tail = tail(simulations);
+        let (least, most) = percentile_interval(&means, simulations);
         Estimate {
-            interval: Some((low.min(quantile(&means, tail)), high.max(quantile(&means, 1.0 - tail)))),
+            interval: Some((low.min(least), high.max(most))),
             simulations,
             spread: spread(&values),
             ..pooled
@@ -165,9 +165,8 @@ impl Resamples {
             let pair = |row: &Vec<f64>| Some(resampled(row, others)? - resampled(row, groups)?);
             let mut differences: Vec<f64> = self.multiplicities.iter().filter_map(pair).collect();
             differences.sort_by(f64::total_cmp);
-            let tail = tail(simulations);
-            (low, high) =
-                (low.min(quantile(&differences, tail)), high.max(quantile(&differences, 1.0 - tail)));
+            let (least, most) = percentile_interval(&differences, simulations);
+            (low, high) = (low.min(least), high.max(most));
         }
         Estimate { interval: Some((low, high)), ..difference }
     }
@@ -183,10 +182,12 @@ fn resampled(multiplicities: &[f64], groups: &[(f64, usize)]) -> Option<f64> {
     (n > 0.0).then(|| sum / n)
 }
 
-/// The tail of the expanded percentile interval over so many simulations, more than one.
-fn tail(simulations: usize) -> f64 {
+/// The expanded percentile interval (Hesterberg 2015) of the `sorted` values of resamples of so many simulations, more
+/// than one.
+pub fn percentile_interval(sorted: &[f64], simulations: usize) -> (f64, f64) {
     let widened = (simulations as f64 / (simulations - 1) as f64).sqrt() * student(simulations);
-    Normal::standard().cdf(-widened)
+    let tail = Normal::standard().cdf(-widened);
+    (quantile(sorted, tail), quantile(sorted, 1.0 - tail))
 }
 
 /// Two-sided p value of the Mann–Whitney U test, by the normal approximation with corrections for ties

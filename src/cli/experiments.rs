@@ -1,4 +1,4 @@
-//! The subcommands that run experiments: reproduce, search, sensitivity.
+//! The subcommands that run experiments: reproduce, search, sensitivity, compare.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -11,7 +11,7 @@ use super::output::say;
 use crate::analysis::claims::Verdict;
 use crate::analysis::published::Experiment;
 use crate::experiments::reproduce::{self, Run};
-use crate::experiments::{design, search, sensitivity};
+use crate::experiments::{compare, design, search, sensitivity};
 use crate::files::prepare_folder;
 use crate::report::claims_table;
 use crate::settings::read_toml;
@@ -144,6 +144,30 @@ impl Sensitivity {
         prepare_folder(out)?;
         sensitivity::study(&design, &text, out)?;
         say(format!("All files are in {}; open sensitivity.md there.", out.display()))?;
+        Ok(ExitCode::SUCCESS)
+    }
+}
+
+/// Compares named configurations by the paper's claims, each with the first one, on the same simulations.
+///
+/// Reads a design (reproduce/ablation.toml explains one) and writes into DIR: comparison.md (a page for people),
+/// figures/*.svg (pictures of the claims), comparison.csv (a row for each configuration and claim), design.toml, and
+/// checkpoints/, from which a comparison that was stopped continues.
+#[derive(Args)]
+pub struct Compare {
+    #[command(flatten)]
+    study: Study,
+}
+
+impl Compare {
+    /// Runs the subcommand.
+    pub fn run(self) -> Result<ExitCode> {
+        self.study.threads.apply()?;
+        let (text, origin) = self.study.design((design::ABLATION, "reproduce/ablation.toml"))?;
+        let (design, out) = (compare::Design::parse(&text, &origin)?, &self.study.out);
+        prepare_folder(out)?;
+        compare::compare(&design, &text, out)?;
+        say(format!("All files are in {}; open comparison.md there.", out.display()))?;
         Ok(ExitCode::SUCCESS)
     }
 }

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use anyhow::Result;
 use clap::{Parser, Subcommand};
 
-use super::experiments::{Reproduce, Search, Sensitivity};
+use super::experiments::{Compare, Reproduce, Search, Sensitivity};
 use super::results::{Plot, Verify};
 use super::stages::{Distance, Infer, Map, Simulate};
 
@@ -27,6 +27,7 @@ enum Command {
     Reproduce(Reproduce),
     Search(Search),
     Sensitivity(Sensitivity),
+    Compare(Compare),
     Plot(Plot),
     Verify(Verify),
 }
@@ -41,6 +42,7 @@ impl Command {
             Self::Reproduce(command) => command.run(),
             Self::Search(command) => command.run(),
             Self::Sensitivity(command) => command.run(),
+            Self::Compare(command) => command.run(),
             Self::Plot(command) => command.run(),
             Self::Verify(command) => command.run(),
         }

@@ -6,6 +6,8 @@ use super::batch::{Batch, Found};
 use super::progress::progress;
 use super::task::{Keep, Task};
 use crate::analysis::conditions::Conditions;
+use crate::analysis::measure::Evidence;
+use crate::analysis::published::Experiment;
 use crate::files::checkpoint::Checkpoints;
 use crate::files::{FileError, sha256_of_text};
 use crate::pipeline::{Condition, Record};
@@ -38,6 +40,20 @@ impl Outcome {
     pub fn conditions(&self, settings: &Settings, counts: impl Fn(&Record) -> bool) -> Conditions {
         let records = self.records.iter().copied().filter(counts).collect();
         Conditions::new(records, settings.experiment.simulations, settings.experiment.seed)
+    }
+
+    /// The draws that belong to an experiment.
+    pub fn evidence(&self, experiment: Experiment, settings: &Settings) -> Evidence {
+        let conditions = self.conditions(settings, |record| match experiment {
+            Experiment::Exp1 => {
+                record.coordination == settings.motion.coordination
+                    && settings.experiment.dimensions.contains(&record.dimension)
+            }
+            Experiment::Exp2 => {
+                record.dimension == settings.experiment.dimension && record.model == Model::DpgmmLj
+            }
+        });
+        Evidence { conditions, baselines: Vec::new(), reading: settings.schema.sampler }
     }
 }
 

@@ -9,6 +9,9 @@ pub const SEARCH: &str = include_str!("../../reproduce/search.toml");
 /// `reproduce/sensitivity.toml`, the design of the study of what the paper leaves open.
 pub const SENSITIVITY: &str = include_str!("../../reproduce/sensitivity.toml");
 
+/// `reproduce/ablation.toml`, the design of the comparison of the authors' code with and without its departures.
+pub const ABLATION: &str = include_str!("../../reproduce/ablation.toml");
+
 /// Lays `over` on `base`, section by section.
 pub fn merge(base: &mut Table, over: &Table) {
     for (name, value) in over {

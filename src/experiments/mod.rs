@@ -3,6 +3,7 @@
 mod ahead;
 mod batch;
 mod body_files;
+pub mod compare;
 mod configurations;
 pub mod design;
 mod error;

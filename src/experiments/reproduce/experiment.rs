@@ -163,7 +163,7 @@ fn evidence_of_bodies(run: &Run, found: &[Found], evidence: &Evidence) -> Vec<Ev
         let baselines: Vec<_> =
             all.iter().filter(|record| record.simulation == simulation).copied().collect();
         Evidence {
-            conditions: evidence.conditions.of_simulation(simulation),
+            conditions: evidence.conditions.redrawn(&[simulation]),
             baselines: baseline_estimates(&baselines),
             reading: evidence.reading,
         }

@@ -3,10 +3,8 @@
 use super::super::configurations::{Failure, Outcome};
 use super::design::{Candidate, Design, Term};
 use crate::analysis::claims::{Judged, judge};
-use crate::analysis::measure::Evidence;
 use crate::analysis::published::Experiment;
 use crate::settings::Settings;
-use crate::stages::schema::Model;
 use crate::stages::simulate::Resolution;
 
 /// A candidate that has been tried.
@@ -34,7 +32,7 @@ impl Design {
     /// A candidate's verdicts and score.
     pub fn judge(&self, candidate: Candidate, settings: &Settings, outcome: &Outcome) -> Tried {
         let judged = [Experiment::Exp1, Experiment::Exp2]
-            .map(|experiment| (experiment, judge(experiment, &evidence(experiment, settings, outcome))));
+            .map(|experiment| (experiment, judge(experiment, &outcome.evidence(experiment, settings))));
         let find = |term: &Term| {
             let of = judged.iter().filter(|(experiment, _)| *experiment == term.experiment);
             let mut all = of.flat_map(|(_, judged)| judged);
@@ -56,20 +54,6 @@ impl Design {
         let (failures, resolution) = (outcome.failures.clone(), outcome.resolution);
         Tried { candidate, score, failures, resolution, terms }
     }
-}
-
-/// The draws of a configuration that belong to an experiment.
-fn evidence(experiment: Experiment, settings: &Settings, outcome: &Outcome) -> Evidence {
-    let conditions = outcome.conditions(settings, |record| match experiment {
-        Experiment::Exp1 => {
-            record.coordination == settings.motion.coordination
-                && settings.experiment.dimensions.contains(&record.dimension)
-        }
-        Experiment::Exp2 => {
-            record.dimension == settings.experiment.dimension && record.model == Model::DpgmmLj
-        }
-    });
-    Evidence { conditions, baselines: Vec::new(), reading: settings.schema.sampler }
 }
 
 impl Term {

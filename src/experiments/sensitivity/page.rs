@@ -89,11 +89,13 @@ impl<'a> Page<'a> {
 pub fn columns() -> [Column; 4] {
     let published = figures().into_iter().find(|figure| figure.name == "fig11b-tree");
     let published = published.and_then(|figure| figure.mark).map(|mark| mark.value);
+    let column =
+        |title: &str, share, published| Column { title: title.to_owned(), share, published, accepted: None };
     [
-        Column { title: "number\nof parts", share: false, published: None },
-        Column { title: "adjusted\nRand index", share: true, published: None },
-        Column { title: "tree right,\nDPGMM-LJ", share: true, published },
-        Column { title: "tree right,\n+ Prim", share: true, published: None },
+        column("number\nof parts", false, None),
+        column("adjusted\nRand index", true, None),
+        column("tree right,\nDPGMM-LJ", true, published),
+        column("tree right,\n+ Prim", true, None),
     ]
 }
 

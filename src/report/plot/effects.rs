@@ -27,13 +27,17 @@ pub struct Line {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Column {
     /// What it shows.
-    pub title: &'static str,
+    pub title: String,
     /// Whether it is a share, so that its axis goes from 0 to 1.
     pub share: bool,
     /// The published value, if there is one.
     pub published: Option<f64>,
+    /// The range that counts as reproduced, if it is drawn.
+    pub accepted: Option<(f64, f64)>,
 }
 
+/// The accepted range: pale green, so that lines and markers stand out.
+const BAND: RGBColor = RGBColor(217, 240, 226);
 const LINE: f64 = 19.0;
 const LABELS: f64 = 176.0;
 const GAP: f64 = 12.0;
@@ -124,7 +128,11 @@ fn render_panel(
     column: &Column,
     cells: &[Cell],
 ) -> Result<Panel, PlotError> {
-    let range = if column.share { -0.04..1.04 } else { whole(ends(cells)) };
+    let range = if column.share {
+        -0.04..1.04
+    } else {
+        whole(ends(cells).chain(column.accepted.into_iter().flat_map(|(low, high)| [low, high])))
+    };
     // Room for two labels: the ends of the scale, or the whole numbers next to them.
     let mut ticks = vec![range.start.ceil(), range.end.floor()];
     ticks.retain(|tick| range.contains(tick));
@@ -147,6 +155,12 @@ fn render_references(canvas: &Canvas, panel: &Panel, column: &Column, default: C
         let x = panel.at(value, 0.0).0;
         ((x, panel.inner.top), (x, panel.inner.top + panel.inner.height))
     };
+    if let Some((low, high)) = column.accepted {
+        // A range may be a single number.
+        let (left, right) = (vertical(low).0.0 - 1.5, vertical(high).0.0 + 1.5);
+        let Rect { top, height, .. } = panel.inner;
+        canvas.bar((left, top), (right, top + height), BAND)?;
+    }
     if let Some(published) = column.published {
         let (from, to) = vertical(published);
         canvas.dashes(from, to, stroke(GREY, 1.4))?;

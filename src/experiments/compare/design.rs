@@ -1,0 +1,103 @@
+//! Read the design of a comparison: the configurations, and the claims that they are compared by.
+
+use std::collections::HashSet;
+
+use serde::Deserialize;
+use toml::Table;
+
+use super::super::error::ExperimentError;
+use crate::analysis::published::{Claim, Experiment, claims};
+use crate::settings::Settings;
+
+/// What is compared, and how each configuration is run.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Design {
+    /// Title of the page.
+    pub title: String,
+    /// What the comparison is for: a paragraph of the page.
+    pub about: String,
+    /// Master seed of all simulations.
+    pub seed: u64,
+    /// What every configuration has instead of `reproduce/paper.toml`'s values: how much is simulated and drawn.
+    pub settings: Table,
+    /// The claims.
+    #[serde(rename = "claim")]
+    pub claims: Vec<Compared>,
+    /// The configurations; all others are compared with the first.
+    #[serde(rename = "configuration")]
+    pub configurations: Vec<Configuration>,
+}
+
+/// A claim that configurations are compared by.
+#[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Compared {
+    /// Its short name.
+    pub id: String,
+    /// The experiment that it is judged by.
+    pub experiment: Experiment,
+    /// What stands above its column, in two lines at most.
+    pub label: String,
+}
+
+/// A configuration.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Configuration {
+    /// Its name in tables and pictures.
+    pub name: String,
+    /// What it has instead of the first one's values.
+    pub settings: Table,
+}
+
+impl Design {
+    /// Reads a design; `origin` says where it is from.
+    ///
+    /// # Errors
+    /// If it is no design, names a claim that is not there, or gives two configurations one name.
+    pub fn parse(text: &str, origin: &str) -> Result<Self, ExperimentError> {
+        let wrong = |message: String| ExperimentError::design(origin, message);
+        let design: Self = toml::from_str(text).map_err(|error| wrong(error.to_string()))?;
+        if design.configurations.len() < 2 || design.claims.is_empty() {
+            return Err(wrong("needs two of [[configuration]] and a [[claim]] at least".to_owned()));
+        }
+        let mut names = HashSet::new();
+        if let Some(twice) = design.configurations.iter().find(|one| !names.insert(&one.name)) {
+            return Err(wrong(format!(
+                "has two configurations `{}`; give each a name of its own",
+                twice.name
+            )));
+        }
+        let claims = claims();
+        if let Some(unknown) = design.claims.iter().find(|compared| compared.find(&claims).is_none()) {
+            let (id, experiment) = (&unknown.id, unknown.experiment.name());
+            let rule = "is no claim with an accepted range of that experiment; see reproduce/published.toml";
+            return Err(wrong(format!("names `{id}` of {experiment}, which {rule}")));
+        }
+        Ok(design)
+    }
+
+    /// The settings of every configuration.
+    ///
+    /// # Errors
+    /// If those of one cannot be used.
+    pub fn all_settings(&self) -> Result<Vec<Settings>, ExperimentError> {
+        let base = &self.configurations[0].settings;
+        let of = |configuration: &Configuration| {
+            let origin = format!("the configuration {}", configuration.name);
+            let mut settings = Settings::overlaid([&self.settings, base, &configuration.settings], &origin)?;
+            settings.experiment.seed = self.seed;
+            Ok(settings)
+        };
+        self.configurations.iter().map(of).collect()
+    }
+}
+
+impl Compared {
+    /// The claim.
+    pub fn find<'a>(&self, claims: &'a [Claim]) -> Option<&'a Claim> {
+        let same = |claim: &&Claim| claim.id == self.id && claim.experiments.contains(&self.experiment);
+        claims.iter().find(same).filter(|claim| claim.accept.is_some())
+    }
+}
