@@ -7,5 +7,7 @@ pub mod measure;
 pub mod one_body;
 pub mod paired;
 pub mod published;
+pub mod shares;
 pub mod single_bodies;
 pub mod statistics;
+pub mod variance;

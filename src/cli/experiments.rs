@@ -1,4 +1,4 @@
-//! The subcommands that run experiments: reproduce, search, sensitivity, compare.
+//! The subcommands that run experiments: reproduce, search, sensitivity, compare, multiverse.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -10,6 +10,7 @@ use super::options::{SettingsAndSeed, Threads, choice, paper, set, with_default}
 use super::output::say;
 use crate::analysis::claims::Verdict;
 use crate::analysis::published::Experiment;
+use crate::experiments::multiverse::{self, Shard};
 use crate::experiments::reproduce::{self, Run};
 use crate::experiments::{compare, design, search, sensitivity};
 use crate::files::prepare_folder;
@@ -168,6 +169,53 @@ impl Compare {
         prepare_folder(out)?;
         compare::compare(&design, &text, out)?;
         say(format!("All files are in {}; open comparison.md there.", out.display()))?;
+        Ok(ExitCode::SUCCESS)
+    }
+}
+
+/// Runs many reasonable readings of the paper, each a replication of its own, and says in what share of them its claims hold
+/// and which choices decide.
+///
+/// Reads a design (reproduce/multiverse.toml explains one) and writes into DIR: specifications/NUMBER/ (settings and claims of
+/// each reading), multiverse.md (a page for people), multiverse.csv (a row for each specification and claim),
+/// specifications.csv (what each one is), shares.csv, variance.csv, figures/*.svg and design.toml. A run that was stopped
+/// continues. On several machines: run each shard into one folder, then gather.
+#[derive(Args)]
+pub struct Multiverse {
+    /// Run only the I-th of N parts of the work, and write no tables
+    #[arg(long, value_name = "I/N")]
+    shard: Option<Shard>,
+    /// Run nothing, and write the tables of what all shards finished
+    #[arg(long, conflicts_with_all = ["shard", "only"])]
+    gather: bool,
+    /// Run only one specification, again if it is finished, and write no tables
+    #[arg(long, value_name = "NUMBER", conflicts_with = "shard")]
+    only: Option<usize>,
+    #[command(flatten)]
+    study: Study,
+}
+
+impl Multiverse {
+    /// Runs the subcommand.
+    pub fn run(self) -> Result<ExitCode> {
+        self.study.threads.apply()?;
+        let (text, origin) = self.study.design((design::MULTIVERSE, "reproduce/multiverse.toml"))?;
+        let (design, out) = (multiverse::Design::parse(&text, &origin)?, &self.study.out);
+        prepare_folder(out)?;
+        if let Some(number) = self.only {
+            let folder = multiverse::rerun(&design, &text, number, out)?;
+            say(format!("Specification {number} is in {}.", folder.display()))?;
+            return Ok(ExitCode::SUCCESS);
+        }
+        if !self.gather {
+            multiverse::work(&design, &text, self.shard.unwrap_or(Shard::WHOLE), out)?;
+        }
+        if self.shard.is_some() {
+            say(format!("This shard is finished in {}. After all shards: --gather.", out.display()))?;
+        } else {
+            multiverse::gather(&design, &text, out)?;
+            say(format!("All files are in {}; open multiverse.md there.", out.display()))?;
+        }
         Ok(ExitCode::SUCCESS)
     }
 }

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use anyhow::Result;
 use clap::{Parser, Subcommand};
 
-use super::experiments::{Compare, Reproduce, Search, Sensitivity};
+use super::experiments::{Compare, Multiverse, Reproduce, Search, Sensitivity};
 use super::results::{Plot, Verify};
 use super::stages::{Distance, Infer, Map, Simulate};
 
@@ -28,6 +28,7 @@ enum Command {
     Search(Search),
     Sensitivity(Sensitivity),
     Compare(Compare),
+    Multiverse(Multiverse),
     Plot(Plot),
     Verify(Verify),
 }
@@ -43,6 +44,7 @@ impl Command {
             Self::Search(command) => command.run(),
             Self::Sensitivity(command) => command.run(),
             Self::Compare(command) => command.run(),
+            Self::Multiverse(command) => command.run(),
             Self::Plot(command) => command.run(),
             Self::Verify(command) => command.run(),
         }

@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use indicatif::ProgressBar;
+
 use super::batch::{Batch, Found};
 use super::progress::progress;
 use super::task::{Keep, Task};
@@ -57,37 +59,75 @@ impl Outcome {
     }
 }
 
-/// Runs all configurations: each at its own p with both mixtures at each of `experiment.dimensions`, and at the other
-/// `experiment.coordinations` with the DPGMM-LJ at `experiment.dimension`. Checkpoints stay in `out`/checkpoints, for a
-/// condition is the same in every round of a search, and in every study of the same program.
+/// Configurations that are run together: each at its own p with both mixtures at each of `experiment.dimensions`, and at
+/// the other `experiment.coordinations` with the DPGMM-LJ at `experiment.dimension`.
+pub struct Configurations<'a> {
+    out: &'a Path,
+    checkpoints: Checkpoints,
+    tasks: Vec<Task>,
+    /// The configuration that each task is of, and its p.
+    of: Vec<(usize, f64)>,
+    count: usize,
+}
+
+impl<'a> Configurations<'a> {
+    /// Those with these settings. Checkpoints are in `out`/checkpoints, for a condition is the same in every round of a
+    /// search, and in every study of the same program.
+    pub fn new(all: &[Settings], out: &'a Path) -> Self {
+        let (mut tasks, mut of) = (Vec::new(), Vec::new());
+        for (at, settings) in all.iter().enumerate() {
+            for coordination in coordinations(settings) {
+                for simulation in 1..=settings.experiment.simulations {
+                    tasks.push(task(settings, coordination, simulation));
+                    of.push((at, coordination));
+                }
+            }
+        }
+        Self { out, checkpoints: Checkpoints::new(out, &"study"), tasks, of, count: all.len() }
+    }
+
+    /// Length of the progress bar for them.
+    pub fn length(&self) -> u64 {
+        Batch::length(&self.tasks)
+    }
+
+    /// Runs them all.
+    ///
+    /// # Errors
+    /// If a checkpoint cannot be written. A configuration that fails is an outcome.
+    pub fn run(&self, bar: &ProgressBar) -> Result<Vec<Outcome>, FileError> {
+        let found = Batch { out: self.out, checkpoints: &self.checkpoints, bar }.side_by_side(&self.tasks)?;
+        let mut outcomes = vec![Outcome::default(); self.count];
+        for (&(at, coordination), outcome) in self.of.iter().zip(found) {
+            match outcome {
+                Ok(Found { records, resolution, .. }) => {
+                    outcomes[at].records.extend(records);
+                    outcomes[at].resolution = outcomes[at].resolution.worse(resolution);
+                }
+                Err(reason) => outcomes[at].failures.push(Failure { coordination, reason }),
+            }
+        }
+        Ok(outcomes)
+    }
+
+    /// Removes their checkpoints, once what they gave is kept elsewhere.
+    ///
+    /// # Errors
+    /// If one cannot be removed.
+    pub fn forget(&self) -> Result<(), FileError> {
+        self.tasks.iter().try_for_each(|task| self.checkpoints.forget(&task.name))
+    }
+}
+
+/// Runs all configurations, with a progress bar of this name, and keeps their checkpoints.
 ///
 /// # Errors
-/// If a checkpoint cannot be written. A configuration that fails is an outcome.
-pub fn run(configurations: &[Settings], out: &Path, name: &str) -> Result<Vec<Outcome>, FileError> {
-    let checkpoints = Checkpoints::new(out, &"study");
-    let mut tasks = Vec::new();
-    let mut of_configuration = Vec::new();
-    for (at, settings) in configurations.iter().enumerate() {
-        for coordination in coordinations(settings) {
-            for simulation in 1..=settings.experiment.simulations {
-                tasks.push(task(settings, coordination, simulation));
-                of_configuration.push((at, coordination));
-            }
-        }
-    }
-    let bar = progress(Batch::length(&tasks), name.to_owned());
-    let found = Batch { out, checkpoints: &checkpoints, bar: &bar }.side_by_side(&tasks)?;
+/// As [`Configurations::run`].
+pub fn run(all: &[Settings], out: &Path, name: &str) -> Result<Vec<Outcome>, FileError> {
+    let configurations = Configurations::new(all, out);
+    let bar = progress(configurations.length(), name.to_owned());
+    let outcomes = configurations.run(&bar)?;
     bar.finish_and_clear();
-    let mut outcomes = vec![Outcome::default(); configurations.len()];
-    for ((at, coordination), outcome) in of_configuration.into_iter().zip(found) {
-        match outcome {
-            Ok(Found { records, resolution, .. }) => {
-                outcomes[at].records.extend(records);
-                outcomes[at].resolution = outcomes[at].resolution.worse(resolution);
-            }
-            Err(reason) => outcomes[at].failures.push(Failure { coordination, reason }),
-        }
-    }
     Ok(outcomes)
 }
 

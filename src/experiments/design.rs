@@ -12,6 +12,9 @@ pub const SENSITIVITY: &str = include_str!("../../reproduce/sensitivity.toml");
 /// `reproduce/ablation.toml`, the design of the comparison of the authors' code with and without its departures.
 pub const ABLATION: &str = include_str!("../../reproduce/ablation.toml");
 
+/// `reproduce/multiverse.toml`, the design of the multiverse of replications.
+pub const MULTIVERSE: &str = include_str!("../../reproduce/multiverse.toml");
+
 /// Lays `over` on `base`, section by section.
 pub fn merge(base: &mut Table, over: &Table) {
     for (name, value) in over {

@@ -94,16 +94,28 @@ impl Checkpoints {
     /// # Errors
     /// If they cannot be removed.
     pub fn clear(&self) -> Result<(), FileError> {
-        match fs::remove_dir_all(&self.folder) {
-            Err(error) if error.kind() != ErrorKind::NotFound => {
-                Err(FileError::new(&self.folder, format!("cannot be removed: {error}")))
-            }
-            _ => Ok(()),
-        }
+        remove(&self.folder)
+    }
+
+    /// Removes those whose names begin with `name` and a slash.
+    ///
+    /// # Errors
+    /// If they cannot be removed.
+    pub fn forget(&self, name: &str) -> Result<(), FileError> {
+        remove(&self.folder.join(name))
     }
 
     fn path(&self, name: &str) -> PathBuf {
         self.folder.join(format!("{name}.json"))
+    }
+}
+
+fn remove(folder: &Path) -> Result<(), FileError> {
+    match fs::remove_dir_all(folder) {
+        Err(error) if error.kind() != ErrorKind::NotFound => {
+            Err(FileError::new(folder, format!("cannot be removed: {error}")))
+        }
+        _ => Ok(()),
     }
 }
 

@@ -49,6 +49,28 @@ pub fn prepare_folder(path: &Path) -> Result<(), FileError> {
         .map_err(|error| FileError::new(path, format!("cannot be written to: {error}")))
 }
 
+/// Writes a folder that appears whole or not at all: `write` fills one beside it, which then takes its name. What was
+/// there before is replaced.
+///
+/// # Errors
+/// If any of that fails.
+pub fn write_folder(
+    path: &Path,
+    write: impl FnOnce(&Path) -> Result<(), FileError>,
+) -> Result<(), FileError> {
+    let aside = path.with_added_extension("partial");
+    let failed = |error: io::Error| FileError::new(path, format!("cannot be written: {error}"));
+    for old in [&aside, path] {
+        match fs::remove_dir_all(old) {
+            Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(failed(error)),
+            _ => {}
+        }
+    }
+    fs::create_dir_all(&aside).map_err(failed)?;
+    write(&aside)?;
+    fs::rename(&aside, path).map_err(failed)
+}
+
 /// [`write_whole`] for text.
 ///
 /// # Errors

@@ -5,8 +5,9 @@ use std::collections::HashSet;
 use serde::Deserialize;
 use toml::Table;
 
+use super::super::compared::Compared;
 use super::super::error::ExperimentError;
-use crate::analysis::published::{Claim, Experiment, claims};
+use crate::analysis::published::claims;
 use crate::settings::Settings;
 
 /// What is compared, and how each configuration is run.
@@ -27,18 +28,6 @@ pub struct Design {
     /// The configurations; all others are compared with the first.
     #[serde(rename = "configuration")]
     pub configurations: Vec<Configuration>,
-}
-
-/// A claim that configurations are compared by.
-#[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Compared {
-    /// Its short name.
-    pub id: String,
-    /// The experiment that it is judged by.
-    pub experiment: Experiment,
-    /// What stands above its column, in two lines at most.
-    pub label: String,
 }
 
 /// A configuration.
@@ -69,12 +58,7 @@ impl Design {
                 twice.name
             )));
         }
-        let claims = claims();
-        if let Some(unknown) = design.claims.iter().find(|compared| compared.find(&claims).is_none()) {
-            let (id, experiment) = (&unknown.id, unknown.experiment.name());
-            let rule = "is no claim with an accepted range of that experiment; see reproduce/published.toml";
-            return Err(wrong(format!("names `{id}` of {experiment}, which {rule}")));
-        }
+        Compared::check(&design.claims, &claims()).map_err(wrong)?;
         Ok(design)
     }
 
@@ -91,13 +75,5 @@ impl Design {
             Ok(settings)
         };
         self.configurations.iter().map(of).collect()
-    }
-}
-
-impl Compared {
-    /// The claim.
-    pub fn find<'a>(&self, claims: &'a [Claim]) -> Option<&'a Claim> {
-        let same = |claim: &&Claim| claim.id == self.id && claim.experiments.contains(&self.experiment);
-        claims.iter().find(same).filter(|claim| claim.accept.is_some())
     }
 }

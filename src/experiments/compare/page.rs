@@ -1,7 +1,8 @@
 //! Describe a comparison for people: a table of values, a table of changes, and what the pictures show.
 
+use super::super::compared::Compared;
 use super::super::design::flat;
-use super::design::{Compared, Configuration, Design};
+use super::design::{Configuration, Design};
 use super::table::Row;
 use crate::analysis::claims::Verdict;
 use crate::analysis::published::{Claim, Unit};

@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::super::compared::Compared;
 use super::super::configurations::Outcome;
-use super::design::Compared;
 use crate::analysis::cells::{EstimateCells, number_or_empty};
 use crate::analysis::claims::{Verdict, judge_claim};
 use crate::analysis::paired::change;

@@ -11,6 +11,7 @@ mod legend;
 mod map;
 mod pictures;
 mod space;
+pub mod specifications;
 mod values;
 
 pub use self::pictures::render;

@@ -1,0 +1,168 @@
+//! Read the design of a multiverse: the open settings, their reasonable values, and how many readings are drawn.
+
+use std::f64::consts::PI;
+
+use serde::Deserialize;
+use toml::{Table, Value};
+
+use super::super::compared::Compared;
+use super::super::design::merge;
+use super::super::error::ExperimentError;
+use crate::analysis::published::claims;
+use crate::settings::Settings;
+
+/// What is drawn, and how each specification is run.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Design {
+    /// Seed of the draws, and of the movements: those of the m-th have the seed plus m.
+    pub seed: u64,
+    /// How many specifications are drawn.
+    pub draws: Draws,
+    /// What every specification has instead of `reproduce/paper.toml`'s values: how much is simulated and drawn.
+    pub settings: Table,
+    /// The claims that are judged.
+    #[serde(rename = "claim")]
+    pub claims: Vec<Compared>,
+    /// Names of factors whose options make groups of specifications that are also looked at alone.
+    #[serde(default)]
+    pub groups: Vec<String>,
+    /// The open settings.
+    #[serde(rename = "factor")]
+    pub factors: Vec<Factor>,
+}
+
+/// How many specifications are drawn, nested so that many share a movement, and of these some the distances.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Draws {
+    /// Draws of the factors that decide the movement.
+    pub movements: usize,
+    /// For each movement, draws of the factors that decide the distances.
+    pub distances: usize,
+    /// For each matrix of distances, draws of all other factors: one specification each.
+    pub inferences: usize,
+}
+
+/// What a factor decides, and all that comes after it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Decides {
+    /// How the body moves.
+    Movement,
+    /// What it feels, and the distances between its sensors.
+    Distances,
+    /// The body map and what is inferred from it.
+    Inference,
+}
+
+/// An open setting, or several that belong together, and its reasonable values.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Factor {
+    /// Name in tables and pictures.
+    pub name: String,
+    /// What it decides.
+    pub decides: Decides,
+    /// What the paper says of it, and where.
+    pub paper: String,
+    /// The values.
+    #[serde(rename = "option")]
+    pub options: Vec<Choice>,
+}
+
+/// A value of an open setting.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Choice {
+    /// Name in tables and pictures.
+    pub label: String,
+    /// Why it is reasonable: a source or a reason.
+    pub why: String,
+    /// The settings.
+    #[serde(default)]
+    pub settings: Table,
+    /// Gains that go with the body.
+    #[serde(default)]
+    pub gains: Option<Gains>,
+}
+
+/// The gains of a torque, by what they do to the body that they are for.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Gains {
+    /// Natural frequency of a part that swings about its end, rad/s: √(stiffness / (m L² / 3)).
+    pub frequency: f64,
+    /// Damping times the step over the axial inertia of a part, m r² / 2; beyond 1 a spin is overshot in one step.
+    pub spin_damping: f64,
+}
+
+impl Design {
+    /// Reads a design; `origin` says where it is from.
+    ///
+    /// # Errors
+    /// If it is no design, a factor has no option, or a claim is not there.
+    pub fn parse(text: &str, origin: &str) -> Result<Self, ExperimentError> {
+        let wrong = |message: String| ExperimentError::design(origin, message);
+        let design: Self = toml::from_str(text).map_err(|error| wrong(error.to_string()))?;
+        if let Some(empty) = design.factors.iter().find(|factor| factor.options.is_empty()) {
+            let message =
+                format!("has a factor `{}` without an option; give it one or remove it", empty.name);
+            return Err(wrong(message));
+        }
+        let known = |name: &String| design.factors.iter().any(|factor| factor.name == *name);
+        if let Some(unknown) = design.groups.iter().find(|name| !known(name)) {
+            return Err(wrong(format!("groups by `{unknown}`, which is no factor")));
+        }
+        let Draws { movements, distances, inferences } = design.draws;
+        if [movements, distances, inferences].contains(&0) {
+            return Err(wrong(
+                "draws nothing: movements, distances and inferences must be positive".to_owned(),
+            ));
+        }
+        if design.claims.is_empty() {
+            return Err(wrong("judges no claim; add a [[claim]]".to_owned()));
+        }
+        Compared::check(&design.claims, &claims()).map_err(wrong)?;
+        Ok(design)
+    }
+
+    /// The settings of a specification, given the option of each factor, and the seed of its movement.
+    ///
+    /// # Errors
+    /// If they cannot be used.
+    pub fn settings(&self, options: &[usize], seed: u64, name: &str) -> Result<Settings, ExperimentError> {
+        let mut table = self.settings.clone();
+        let mut gains = None;
+        for (factor, &option) in self.factors.iter().zip(options) {
+            let choice = &factor.options[option];
+            merge(&mut table, &choice.settings);
+            gains = choice.gains.or(gains);
+        }
+        let origin = format!("specification {name}");
+        let mut settings = Settings::overlaid([&table], &origin)?;
+        if let Some(gains) = gains {
+            let motion = Table::from_iter([("motion".to_owned(), Value::Table(gains.of(&settings)))]);
+            settings = Settings::overlaid([&table, &motion], &origin)?;
+        }
+        settings.experiment.seed = seed;
+        Ok(settings)
+    }
+}
+
+impl Gains {
+    /// `[motion]` for a body, in three digits.
+    fn of(self, settings: &Settings) -> Table {
+        let Settings { agent, physics, .. } = settings;
+        let mass = agent.density * PI * agent.part_radius.powi(2) * agent.part_length;
+        let stiffness = self.frequency.powi(2) * mass * agent.part_length.powi(2) / 3.0;
+        let damping = self.spin_damping * mass * agent.part_radius.powi(2) / 2.0 / physics.step;
+        let digits = |value: f64| format!("{value:.2e}").parse().expect("it is a number");
+        let number = |value: f64| Value::Float(digits(value));
+        Table::from_iter([
+            ("controller".to_owned(), Value::String("torque".to_owned())),
+            ("stiffness".to_owned(), number(stiffness)),
+            ("damping".to_owned(), number(damping)),
+        ])
+    }
+}

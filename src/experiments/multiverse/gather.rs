@@ -1,0 +1,103 @@
+//! Gather the specifications of a multiverse into tables, pictures and a page.
+
+use std::path::Path;
+
+use serde::Serialize;
+use serde_json::{Map, Value};
+
+use super::super::error::ExperimentError;
+use super::design::Design;
+use super::draw::specifications;
+use super::evaluation::Evaluation;
+use super::page::page;
+use super::specification::{self, Row, Specification};
+use super::work::COPY;
+use crate::files::manifest::Manifest;
+use crate::files::result_folder::ResultFolder;
+use crate::files::{FileError, read_text};
+use crate::report::plot::specifications as curve;
+
+/// A row of multiverse.csv.
+#[derive(Serialize)]
+struct NumberedRow<'a> {
+    specification: usize,
+    movement: usize,
+    resolved: bool,
+    #[serde(flatten)]
+    row: &'a Row,
+}
+
+/// Gathers all specifications in `out`, and writes: specifications.csv, multiverse.csv, shares.csv, variance.csv, figures/
+/// and multiverse.md.
+///
+/// # Errors
+/// If `out` holds another design or lacks a specification, or a file cannot be written.
+pub fn gather(design: &Design, text: &str, out: &Path) -> Result<(), ExperimentError> {
+    let path = out.join(COPY);
+    if read_text(&path)? != text {
+        let message = "is another design, whose results are in this folder; gather with that design";
+        return Err(FileError::new(&path, message).into());
+    }
+    let all = read_all(design, out)?;
+    let mut folder = ResultFolder::new(out);
+    folder.remember([COPY.to_owned()]);
+    folder.write_rows("specifications.csv", all.iter().map(|one| row_of(design, one)))?;
+    let rows = all.iter().flat_map(|one| {
+        let Specification { summary, rows } = one;
+        rows.iter().map(move |row| NumberedRow {
+            specification: summary.number,
+            movement: summary.movement,
+            resolved: summary.resolved,
+            row,
+        })
+    });
+    folder.write_rows("multiverse.csv", rows)?;
+    let evaluation = Evaluation::new(design, &all);
+    folder.write_rows("shares.csv", &evaluation.shares)?;
+    folder.write_rows("variance.csv", &evaluation.variance)?;
+    for at in 0..design.claims.len() {
+        let picture = curve::render(&evaluation.curve(at));
+        let picture = picture.map_err(|error| FileError::new(out, error.0))?;
+        folder.write_text(&format!("figures/{}.svg", design.claims[at].id), &picture)?;
+    }
+    folder.write_text("multiverse.md", &page(&evaluation))?;
+    folder.write_manifest(Manifest::of_study("multiverse", design.seed))?;
+    Ok(())
+}
+
+fn read_all(design: &Design, out: &Path) -> Result<Vec<Specification>, ExperimentError> {
+    let (mut all, mut missing) = (Vec::new(), Vec::new());
+    for drawn in specifications(design) {
+        match specification::read(out, drawn.number)? {
+            Some(found) => all.push(found),
+            None => missing.push(drawn.number),
+        }
+    }
+    match missing.first() {
+        None => Ok(all),
+        Some(first) => {
+            let message = format!(
+                "lacks {} of {} specifications, {first} the first of them; run their shards before they are gathered",
+                missing.len(),
+                missing.len() + all.len()
+            );
+            Err(FileError::new(&out.join("specifications"), message).into())
+        }
+    }
+}
+
+/// What a specification is, and whether the step resolved it: a row of specifications.csv, with a column for each factor.
+fn row_of(design: &Design, one: &Specification) -> Map<String, Value> {
+    let summary = &one.summary;
+    let fixed = [
+        ("specification", summary.number.into()),
+        ("movement", summary.movement.into()),
+        ("resolved", summary.resolved.into()),
+        ("anchor_separation_m", summary.anchor_separation.into()),
+        ("turn", summary.turn.into()),
+        ("failed", summary.failed.into()),
+        ("failure", summary.failure.as_str().into()),
+    ];
+    let factors = design.factors.iter().map(|factor| (factor.name.as_str(), one.label(&factor.name).into()));
+    fixed.into_iter().chain(factors).map(|(name, value)| (name.to_owned(), value)).collect()
+}

@@ -1,0 +1,186 @@
+//! Describe a multiverse for people: first the answer, then the evidence.
+
+use super::super::design::flat;
+use super::design::{Design, Draws, Factor};
+use super::evaluation::{Evaluation, ShareRow, TOGETHER, VarianceRow};
+use crate::analysis::published::{HEADLINE, Unit};
+use crate::report::markdown::{row, rule};
+use crate::report::numbers;
+
+/// Sources of variance that are shown of a claim.
+const SHOWN: usize = 4;
+
+/// The page.
+pub fn page(evaluation: &Evaluation) -> String {
+    let Evaluation { design, .. } = evaluation;
+    let mut lines = vec!["# A multiverse of replications\n".to_owned(), answer(evaluation), String::new()];
+    lines.push(made(evaluation));
+    lines.push("\n## In what share does each claim hold?\n".to_owned());
+    lines.push(
+        "A claim holds in a specification if its value is within the accepted range; without a value it does not hold. \
+         Intervals are 95 % intervals over resamples of the movements, with which go their bodies and their \
+         specifications. All numbers: [shares.csv](shares.csv).\n"
+            .to_owned(),
+    );
+    lines.extend(shares(evaluation));
+    lines.push("\n## What decides?\n".to_owned());
+    lines.push(format!(
+        "The {SHOWN} largest shares of each claim's variance (ω² of a linear model of all choices), for single choices and for \
+         two together beyond what each does alone. Intervals are 95 % intervals by the jackknife over movements. All numbers: \
+         [variance.csv](variance.csv).\n"
+    ));
+    lines.extend(decisive(evaluation));
+    lines.push("\n## Specification curves\n".to_owned());
+    lines.push(
+        "All estimates by size, with their intervals (grey), the accepted range (green) and the published number (dashed). \
+         Beneath: the darker, the more of the estimates above have that choice.\n"
+            .to_owned(),
+    );
+    for compared in &design.claims {
+        lines.push(format!("![{}](figures/{}.svg)\n", compared.label.replace('\n', " "), compared.id));
+    }
+    lines.push("## The choices\n".to_owned());
+    for factor in &design.factors {
+        lines.extend(choices(factor));
+    }
+    lines.join("\n").trim_end().to_owned() + "\n"
+}
+
+/// The answer in a paragraph.
+fn answer(evaluation: &Evaluation) -> String {
+    let find = |group: &str, claim: &str| {
+        evaluation.shares.iter().find(|row| row.group == group && row.claim == claim)
+    };
+    let of = |group: &str, claim: &str| find(group, claim).map_or("–".to_owned(), in_words);
+    let count = evaluation.all.len();
+    let resolved = evaluation.all.iter().filter(|one| one.summary.resolved).count();
+    let failed = evaluation.all.iter().filter(|one| one.summary.failed > 0).count();
+    let mut words = format!(
+        "Of {count} reasonable ways to replicate the paper, {} have a tree accuracy within the accepted range; among the \
+         {resolved} whose movements the physics step resolves, {}. All claims together hold in {}. {failed} failed: their \
+         movement was unstable, or their sensors gave no map.",
+        of("all", HEADLINE),
+        of("resolved", HEADLINE),
+        of("all", TOGETHER),
+    );
+    let headline = evaluation.variance.iter().filter(|row| row.claim == HEADLINE && row.with.is_empty());
+    let mut sources: Vec<&VarianceRow> = headline.filter(|row| row.share.is_some()).collect();
+    sources.sort_by(|a, b| b.share.unwrap_or_default().total_cmp(&a.share.unwrap_or_default()));
+    if let [first, second, ..] = &sources[..] {
+        words += &format!(
+            " What decides the tree accuracy most is the {} ({} of its variance), then the {} ({}).",
+            first.factor,
+            variance(first),
+            second.factor,
+            variance(second)
+        );
+    }
+    if let Some(joint) = &evaluation.joint {
+        let (middle, low, high) = joint.expected;
+        let percent = |share: f64| numbers::value(Some(share), Some(Unit::Rate));
+        words += &format!(
+            " If the published rate were true in every one that has a rate, {} of them would be within the range by chance \
+             (95 % of simulated multiverses: {} to {}), where {} are: {} of simulated multiverses have as few.",
+            percent(middle),
+            percent(low),
+            percent(high),
+            percent(joint.share),
+            percent(joint.as_low)
+        );
+    }
+    words
+}
+
+fn in_words(row: &ShareRow) -> String {
+    format!(
+        "{} ({})",
+        numbers::value(row.share, Some(Unit::Rate)),
+        numbers::range(row.low.zip(row.high), Some(Unit::Rate))
+    )
+}
+
+fn variance(row: &VarianceRow) -> String {
+    let value = numbers::value(row.share, Some(Unit::Rate));
+    match row.low.zip(row.high) {
+        Some(ends) => format!("{value}, {}", numbers::range(Some(ends), Some(Unit::Rate))),
+        None => value,
+    }
+}
+
+/// How it was made.
+fn made(evaluation: &Evaluation) -> String {
+    let Design { seed, draws, settings, .. } = evaluation.design;
+    let Draws { movements, distances, inferences } = draws;
+    format!(
+        "Made by `bodyschema multiverse` (revision {}, seed {seed}): {movements} movements, of each {distances} matrices of \
+         distances, of each {inferences} ways to infer, drawn evenly from all combinations of the choices below by a scrambled \
+         Sobol sequence; {}. Any specification can be run again by its number: its settings are in \
+         specifications/NUMBER/settings.toml, and `bodyschema multiverse --only NUMBER` makes that folder. All values: \
+         [multiverse.csv](multiverse.csv); what each specification is: [specifications.csv](specifications.csv).",
+        env!("BODYSCHEMA_REVISION"),
+        flat(settings).join(", ")
+    )
+}
+
+/// A row for each claim, a column for each group.
+fn shares(evaluation: &Evaluation) -> Vec<String> {
+    let groups: Vec<(String, usize)> =
+        evaluation.groups().into_iter().map(|(name, members)| (name, members.len())).collect();
+    let header = groups.iter().map(|(name, n)| format!("{name} (n = {n})"));
+    let header = ["claim".to_owned(), "accepted".to_owned()].into_iter().chain(header);
+    let mut lines = vec![row(header), rule(groups.len() + 2)];
+    let claims = evaluation.design.claims.iter().zip(&evaluation.claims);
+    let named = claims.map(|(compared, claim)| {
+        let accepted = numbers::range(claim.accept, claim.measure.unit());
+        (compared.id.as_str(), compared.label.replace('\n', " "), accepted)
+    });
+    for (id, label, accepted) in named.chain([(TOGETHER, TOGETHER.to_owned(), String::new())]) {
+        let cells = groups.iter().map(|(group, _)| {
+            let found = evaluation.shares.iter().find(|row| row.group == *group && row.claim == id);
+            found.map_or("–".to_owned(), in_words)
+        });
+        lines.push(row([label, accepted].into_iter().chain(cells)));
+    }
+    lines
+}
+
+/// The largest shares of variance of each claim.
+fn decisive(evaluation: &Evaluation) -> Vec<String> {
+    let mut lines = vec![row(["claim", "n", "single choices", "two together"]), rule(4)];
+    for compared in &evaluation.design.claims {
+        let of = |pairs: bool| {
+            let own = evaluation.variance.iter().filter(|row| row.claim == compared.id);
+            let mut own: Vec<&VarianceRow> = own
+                .filter(|row| row.with.is_empty() != pairs && row.share.is_some_and(|share| share > 0.0))
+                .collect();
+            own.sort_by(|a, b| b.share.unwrap_or_default().total_cmp(&a.share.unwrap_or_default()));
+            let name = |row: &VarianceRow| match row.with.as_str() {
+                "" => row.factor.clone(),
+                other => format!("{} × {other}", row.factor),
+            };
+            let words: Vec<String> =
+                own.iter().take(SHOWN).map(|row| format!("{} {}", name(row), variance(row))).collect();
+            words.join("; ")
+        };
+        let n = evaluation.variance.iter().find(|row| row.claim == compared.id).map_or(0, |row| row.n);
+        lines.push(row([compared.label.replace('\n', " "), n.to_string(), of(false), of(true)]));
+    }
+    lines
+}
+
+fn choices(factor: &Factor) -> Vec<String> {
+    let mut lines = vec![format!("**{}.** The paper: {}.\n", factor.name, factor.paper)];
+    lines.extend([row(["option", "settings", "why"]), rule(3)]);
+    lines.extend(factor.options.iter().map(|option| {
+        let mut settings = flat(&option.settings);
+        if let Some(gains) = option.gains {
+            settings.push(format!(
+                "natural frequency {} rad/s, damping × step = {} × axial inertia",
+                gains.frequency, gains.spin_damping
+            ));
+        }
+        row([option.label.clone(), settings.join(", "), option.why.clone()])
+    }));
+    lines.push(String::new());
+    lines
+}

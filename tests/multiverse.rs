@@ -1,0 +1,184 @@
+//! A multiverse: shards give the bytes of one run, what was stopped goes on, a failure is a result, and what cannot be done is
+//! refused in one line.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+/// Bodies of few sensors, for seconds. One of the two controllers is unstable.
+const DESIGN: &str = r#"
+seed = 100
+groups = ["levels"]
+[draws]
+movements = 4
+distances = 2
+inferences = 2
+[settings]
+skin = { around = 8, along = 3 }
+physics = { duration = 1000.0 }
+schema = { chains = 3, sweeps = 30 }
+experiment = { simulations = 2, dimensions = [2, 4], coordinations = [0.4], dimension = 4 }
+[[claim]]
+id = "number-of-parts"
+experiment = "exp1"
+label = "number\nof parts"
+[[claim]]
+id = "ari-over-coordination"
+experiment = "exp2"
+label = "ARI"
+[[factor]]
+name = "gains"
+decides = "movement"
+paper = "nothing"
+[[factor.option]]
+label = "gentle"
+why = "it is stable"
+gains = { frequency = 1.0, spin_damping = 0.1 }
+[[factor.option]]
+label = "wild"
+why = "it is not"
+settings = { motion = { stiffness = 1e5, damping = 1e5 } }
+[[factor]]
+name = "levels"
+decides = "distances"
+paper = "N"
+[[factor.option]]
+label = "two"
+why = "few"
+settings = { quantise = { levels = 2 } }
+[[factor.option]]
+label = "four"
+why = "more"
+settings = { quantise = { levels = 4 } }
+[[factor]]
+name = "start"
+decides = "inference"
+paper = "nothing"
+[[factor.option]]
+label = "uniform"
+why = "plain"
+settings = { schema = { start = "uniform" } }
+[[factor.option]]
+label = "k-means"
+why = "usual"
+settings = { schema = { start = "k-means" } }
+"#;
+
+fn bodyschema(folder: &Path, arguments: &str) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_bodyschema"));
+    command.current_dir(folder).args(arguments.split(' ')).output().unwrap()
+}
+
+fn succeed(folder: &Path, arguments: &str) {
+    let output = bodyschema(folder, arguments);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+}
+
+/// All files of a folder but its checkpoints, by name.
+fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let mut all = BTreeMap::new();
+    for entry in fs::read_dir(folder).unwrap().map(Result::unwrap) {
+        let name = entry.file_name().into_string().unwrap();
+        if entry.path().is_file() {
+            all.insert(name, fs::read(entry.path()).unwrap());
+        } else if name != "checkpoints" {
+            let inner = files(&entry.path()).into_iter();
+            all.extend(inner.map(|(inner, bytes)| (format!("{name}/{inner}"), bytes)));
+        }
+    }
+    all
+}
+
+fn rows(path: &Path) -> Vec<BTreeMap<String, String>> {
+    csv::Reader::from_path(path).unwrap().deserialize().map(Result::unwrap).collect()
+}
+
+#[test]
+fn shards_give_the_bytes_of_one_run_and_a_failure_is_a_result() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    fs::write(at("design.toml"), DESIGN).unwrap();
+    succeed(folder.path(), "multiverse --design design.toml --jobs 1 --out whole");
+    let whole = files(&at("whole"));
+
+    let specifications = rows(&at("whole/specifications.csv"));
+    assert!(specifications.len() > 8 && specifications.len() <= 16, "{}", specifications.len());
+    for row in &specifications {
+        // What is unstable has a reason, and no value.
+        assert_eq!(row["gains"] == "wild", !row["failure"].is_empty(), "{row:?}");
+        assert_eq!(row["gains"] == "wild", row["failed"] != "0");
+    }
+    // An even draw has both options of every factor, and of the first as often as can be.
+    let wild = specifications.iter().filter(|row| row["gains"] == "wild").count();
+    assert!((4..=specifications.len() - 4).contains(&wild), "{wild}");
+    let claims = rows(&at("whole/multiverse.csv"));
+    assert_eq!(claims.len(), 2 * specifications.len());
+    assert_eq!(claims.iter().filter(|row| row["value"].is_empty()).count(), 2 * wild);
+    let shares = rows(&at("whole/shares.csv"));
+    let all = shares.iter().find(|row| row["group"] == "all" && row["claim"] == "number-of-parts").unwrap();
+    assert_eq!(all["n"].parse::<usize>().unwrap(), specifications.len());
+    assert_eq!(all["with_value"].parse::<usize>().unwrap(), specifications.len() - wild);
+    for name in ["multiverse.md", "variance.csv", "figures/number-of-parts.svg"] {
+        let text = String::from_utf8(whole[name].clone()).unwrap();
+        assert!(!text.contains("NaN") && !text.is_empty(), "{name}");
+    }
+
+    // Shards, one of them stopped and run again, in any order and with any number of threads.
+    let shard = |shard: &str, jobs: usize| {
+        succeed(
+            folder.path(),
+            &format!("multiverse --design design.toml --shard {shard} --jobs {jobs} --out shards"),
+        );
+    };
+    shard("3/3", 2);
+    fs::remove_dir_all(at("shards/specifications/000003")).unwrap_or_default();
+    shard("1/3", 1);
+    let early = bodyschema(folder.path(), "multiverse --design design.toml --gather --out shards");
+    let message = String::from_utf8(early.stderr).unwrap();
+    assert!(early.status.code() == Some(2) && message.contains("lacks"), "{message}");
+    assert_eq!(message.lines().count(), 1, "{message}");
+    for part in ["2/3", "3/3"] {
+        shard(part, 3);
+    }
+    succeed(folder.path(), "multiverse --design design.toml --gather --out shards");
+    assert_eq!(files(&at("shards")), whole);
+
+    // Any one can be run again by its number, and by its settings.
+    succeed(folder.path(), "multiverse --design design.toml --only 2 --out two");
+    for (name, bytes) in files(&at("two/specifications")) {
+        assert_eq!(bytes, whole[&format!("specifications/{name}")], "{name}");
+    }
+    succeed(folder.path(), "simulate --settings two/specifications/000002/settings.toml --out body");
+    succeed(folder.path(), "verify whole");
+}
+
+#[test]
+fn what_cannot_be_done_is_refused_in_one_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    let refused = |design: &str, arguments: &str, expected: &str| {
+        fs::write(at("design.toml"), design).unwrap();
+        let output = bodyschema(folder.path(), &format!("multiverse --design design.toml {arguments}"));
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{message}");
+        assert!(message.contains(expected), "{message:?} lacks {expected:?}");
+        message
+    };
+    let one_line = |message: String| assert_eq!(message.lines().count(), 1, "{message}");
+    let empty = DESIGN.split("[[factor.option]]\nlabel = \"uniform\"").next().unwrap();
+    one_line(refused(&format!("{empty}option = []\n"), "--out out", "`start` without an option"));
+    one_line(refused(&DESIGN.replace("movements = 4", "movements = 0"), "--out out", "draws nothing"));
+    one_line(refused(&DESIGN.replace("number-of-parts", "beauty"), "--out out", "names `beauty`"));
+    one_line(refused(&DESIGN.replace("levels = 2 }", "levels = 1 }"), "--out out", "quantise.levels"));
+    one_line(refused(&DESIGN.replace("[\"levels\"]", "[\"fins\"]"), "--out out", "groups by `fins`"));
+    one_line(refused(DESIGN, "--only 99 --out out", "there is no specification 99"));
+    for shard in ["3/2", "0/2", "1/0", "x", "-1/2"] {
+        refused(DESIGN, &format!("--shard={shard} --out out"), "a shard is I/N");
+    }
+    fs::create_dir(at("other")).unwrap();
+    fs::write(at("other/design.toml"), "seed = 1").unwrap();
+    one_line(refused(DESIGN, "--out other", "another design"));
+    one_line(refused(DESIGN, "--gather --out other", "another design"));
+    one_line(refused(DESIGN, "--gather --out empty", "design.toml"));
+}
