@@ -145,3 +145,50 @@ fn correlation(rates: &[Rate], true_rate: f64) -> f64 {
     let mean = excess.iter().sum::<f64>() / excess.len().max(1) as f64;
     (mean / (true_rate * (1.0 - true_rate))).clamp(0.0, 0.99)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::numerics::rng::stream;
+
+    #[test]
+    fn a_share_has_the_interval_of_its_movements_not_of_its_specifications() {
+        // Ten movements of a hundred specifications that all agree: as much as ten coin throws say.
+        let held: Vec<Held> =
+            (0..1000).map(|at| Held { movement: at / 100, holds: at / 100 % 2 == 0 }).collect();
+        let share = share(&held, &mut stream(1, 0, "shares", 0));
+        assert_eq!((share.value, share.simulations), (Some(0.5), 10));
+        let (low, high) = share.interval.unwrap();
+        assert!((0.1..=0.3).contains(&low) && (0.7..=0.9).contains(&high), "{low} to {high}");
+    }
+
+    fn rates(rate: impl Fn(usize) -> f64, spread: Option<(f64, f64)>) -> Vec<Rate> {
+        (0..200).map(|at| Rate { movement: at / 4, rate: rate(at), draws: 20, bodies: 2, spread }).collect()
+    }
+
+    fn inference(rates: &[Rate]) -> JointInference {
+        joint_inference(rates, 0.85, (0.75, 0.95), &mut stream(1, 0, "joint", 0)).unwrap()
+    }
+
+    #[test]
+    fn a_multiverse_drawn_from_the_rate_looks_like_it_and_another_does_not() {
+        // Of 20 draws at 0.85 between 15 and 19 are right with probability 0.894 (binomial distribution).
+        let mut rng = stream(2, 0, "joint", 0);
+        let binomial = Binomial::new(20, 0.85).unwrap();
+        let drawn: Vec<f64> = (0..200).map(|_| binomial.sample(&mut rng) as f64 / 20.0).collect();
+        let found = inference(&rates(|at| drawn[at], Some((0.85, 0.85))));
+        assert!((found.expected.0 - 0.894).abs() < 0.02, "{found:?}");
+        assert!((0.02..0.98).contains(&found.as_low) && found.correlation == 0.0, "{found:?}");
+        let other = inference(&rates(|at| if at % 2 == 0 { 1.0 } else { 0.85 }, Some((0.85, 0.85))));
+        assert!(other.as_low < 0.001 && other.share == 0.5, "{other:?}");
+    }
+
+    #[test]
+    fn bodies_that_differ_make_fewer_rates_likely_to_be_in_the_range() {
+        let alike = inference(&rates(|_| 0.85, Some((0.85, 0.85))));
+        let apart = inference(&rates(|_| 0.85, Some((0.5, 1.0))));
+        assert!(apart.correlation > 0.5, "{apart:?}");
+        assert!(apart.expected.0 < alike.expected.0 && apart.expected.1 < alike.expected.1, "{apart:?}");
+        assert!(joint_inference(&[], 0.85, (0.75, 0.95), &mut stream(1, 0, "joint", 0)).is_none());
+    }
+}

@@ -37,25 +37,18 @@ impl Table {
         let factors = (0..count).map(Source::Factor);
         let pairs = (0..count).flat_map(|a| (a + 1..count).map(move |b| Source::Pair(a, b)));
         let sources: Vec<Source> = factors.chain(pairs).collect();
-        sources.par_iter().map(|&source| (source, self.share(source))).collect()
-    }
-
-    fn share(&self, source: Source) -> Estimate {
         let mut clusters = self.clusters.clone();
         clusters.sort_unstable();
         clusters.dedup();
-        let n = self.values.len();
-        let Some(value) = self.omega_squared(source) else { return Estimate::bare(None, n) };
-        let left_out: Option<Vec<f64>> =
-            clusters.iter().map(|&cluster| self.without(cluster).omega_squared(source)).collect();
-        let interval = left_out.filter(|all| all.len() > 1).map(|all| {
-            let m = all.len() as f64;
-            let mean = all.iter().sum::<f64>() / m;
-            let variance = (m - 1.0) / m * all.iter().map(|one| (one - mean).powi(2)).sum::<f64>();
-            let half = 1.96 * variance.sqrt();
-            ((value - half).max(0.0), (value + half).min(1.0))
-        });
-        Estimate { value: Some(value), n, interval, ..Estimate::default() }
+        let all = self.omega_squared(&sources);
+        let left_out: Vec<Vec<Option<f64>>> =
+            clusters.par_iter().map(|&cluster| self.without(cluster).omega_squared(&sources)).collect();
+        let share = |(at, value): (usize, &Option<f64>)| {
+            let others: Option<Vec<f64>> = left_out.iter().map(|shares| shares[at]).collect();
+            let interval = value.zip(others).and_then(|(value, others)| jackknife(value, &others));
+            Estimate { value: *value, n: self.values.len(), interval, ..Estimate::default() }
+        };
+        sources.into_iter().zip(all.iter().enumerate().map(share)).collect()
     }
 
     fn without(&self, cluster: usize) -> Self {
@@ -68,40 +61,40 @@ impl Table {
         }
     }
 
-    /// ω², not below 0.
-    fn omega_squared(&self, source: Source) -> Option<f64> {
-        let all: Vec<usize> = (0..self.levels.len()).collect();
-        let mut full = self.constant();
-        let mut reduced = self.constant();
-        for &factor in &all {
-            full.extend(self.indicators(factor));
-            if source != Source::Factor(factor) {
-                reduced.extend(self.indicators(factor));
-            }
-        }
-        if let Source::Pair(a, b) = source {
-            let products = |x: &Vec<f64>| {
-                self.indicators(b)
-                    .into_iter()
-                    .map(|y| x.iter().zip(&y).map(|(x, y)| x * y).collect::<Vec<f64>>())
-                    .collect::<Vec<_>>()
+    /// ω² of each source, not below 0.
+    fn omega_squared(&self, sources: &[Source]) -> Vec<Option<f64>> {
+        let mut constant = Fit::new(&self.values);
+        constant.add(&vec![1.0; self.values.len()]);
+        let indicators: Vec<Vec<Vec<f64>>> =
+            (0..self.levels.len()).map(|factor| self.indicators(factor)).collect();
+        let without = |left_out: Option<usize>| {
+            let mut fit = constant.clone();
+            let kept = indicators.iter().enumerate().filter(|(factor, _)| Some(*factor) != left_out);
+            kept.flat_map(|(_, columns)| columns).for_each(|column| fit.add(column));
+            fit
+        };
+        let main = without(None);
+        let total = constant.squares();
+        let varies = total > 1e-12 * self.values.iter().map(|value| value * value).sum::<f64>();
+        let share = |source: &Source| {
+            let (reduced, full) = match *source {
+                Source::Factor(factor) => (without(Some(factor)), main.clone()),
+                Source::Pair(a, b) => {
+                    let mut full = main.clone();
+                    for x in &indicators[a] {
+                        for y in &indicators[b] {
+                            full.add(&x.iter().zip(y).map(|(x, y)| x * y).collect::<Vec<_>>());
+                        }
+                    }
+                    (main.clone(), full)
+                }
             };
-            full.extend(self.indicators(a).iter().flat_map(products));
-        }
-        let total = self.residual(&self.constant()).0;
-        let (without, rank_without) = self.residual(&reduced);
-        let (with, rank) = self.residual(&full);
-        let freedom = self.values.len().checked_sub(rank).filter(|left| *left > 0)? as f64;
-        if total <= 1e-12 * self.values.iter().map(|value| value * value).sum::<f64>() {
-            return None;
-        }
-        let error = with / freedom;
-        let effect = without - with - (rank - rank_without) as f64 * error;
-        Some((effect / (total + error)).max(0.0))
-    }
-
-    fn constant(&self) -> Vec<Vec<f64>> {
-        vec![vec![1.0; self.values.len()]]
+            let freedom = self.values.len().checked_sub(full.rank()).filter(|left| *left > 0 && varies)?;
+            let error = full.squares() / freedom as f64;
+            let effect = reduced.squares() - full.squares() - (full.rank() - reduced.rank()) as f64 * error;
+            Some((effect / (total + error)).max(0.0))
+        };
+        sources.iter().map(share).collect()
     }
 
     /// A column for each level but the first.
@@ -112,30 +105,113 @@ impl Table {
             .map(|level| levels.iter().map(|one| f64::from(u8::from(*one == level))).collect())
             .collect()
     }
+}
 
-    /// What least squares leaves of the numbers, Σ of squares, and the rank of the columns.
-    fn residual(&self, columns: &[Vec<f64>]) -> (f64, usize) {
-        /// A column whose part that the others do not span is shorter than this share of it is spanned by them.
+/// Half a 95 % interval on both sides of a share, from the shares without each cluster.
+fn jackknife(value: f64, left_out: &[f64]) -> Option<(f64, f64)> {
+    let count = left_out.len() as f64;
+    let mean = left_out.iter().sum::<f64>() / count;
+    let variance = (count - 1.0) / count * left_out.iter().map(|one| (one - mean).powi(2)).sum::<f64>();
+    let half = 1.96 * variance.sqrt();
+    (left_out.len() > 1).then(|| ((value - half).max(0.0), (value + half).min(1.0)))
+}
+
+/// What least squares leaves of some numbers, column after column.
+#[derive(Clone)]
+struct Fit {
+    left: DVector<f64>,
+    /// Orthonormal columns.
+    basis: Vec<DVector<f64>>,
+}
+
+impl Fit {
+    fn new(values: &[f64]) -> Self {
+        Self { left: DVector::from_column_slice(values), basis: Vec::new() }
+    }
+
+    /// Fits one more column, unless the others span it.
+    fn add(&mut self, column: &[f64]) {
+        /// A column is spanned if the part that is not is shorter than this share of it.
         const SPANNED: f64 = 1e-8;
-        let mut left = DVector::from_column_slice(&self.values);
-        let mut basis: Vec<DVector<f64>> = Vec::new();
-        for column in columns {
-            let mut own = DVector::from_column_slice(column);
-            let length = own.norm();
-            // Twice is enough (Giraud, Langou and Rozloznik 2005).
-            for _ in 0..2 {
-                for one in &basis {
-                    let along = one.dot(&own);
-                    own.axpy(-along, one, 1.0);
-                }
-            }
-            if own.norm() > SPANNED * length {
-                own /= own.norm();
-                let along = own.dot(&left);
-                left.axpy(-along, &own, 1.0);
-                basis.push(own);
+        let mut own = DVector::from_column_slice(column);
+        let length = own.norm();
+        // Twice is enough (Giraud, Langou and Rozloznik 2005).
+        for _ in 0..2 {
+            for one in &self.basis {
+                let along = one.dot(&own);
+                own.axpy(-along, one, 1.0);
             }
         }
-        (left.norm_squared(), basis.len())
+        if own.norm() > SPANNED * length {
+            own /= own.norm();
+            let along = own.dot(&self.left);
+            self.left.axpy(-along, &own, 1.0);
+            self.basis.push(own);
+        }
+    }
+
+    /// Σ of squares of what is left.
+    fn squares(&self) -> f64 {
+        self.left.norm_squared()
+    }
+
+    fn rank(&self) -> usize {
+        self.basis.len()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use serde::Deserialize;
+
+    use super::*;
+
+    #[derive(Deserialize)]
+    struct Reference {
+        values: Vec<f64>,
+        clusters: Vec<usize>,
+        levels: Vec<Vec<usize>>,
+        /// Value, lower and upper end, of each factor and then of each pair.
+        shares: Vec<[f64; 3]>,
+    }
+
+    fn reference() -> (Table, Vec<[f64; 3]>) {
+        let text = include_str!("../../tests/reference/variance.json");
+        let Reference { values, clusters, levels, shares } = serde_json::from_str(text).unwrap();
+        (Table { values, clusters, levels }, shares)
+    }
+
+    #[test]
+    fn shares_and_their_intervals_are_those_of_the_reference() {
+        let (table, expected) = reference();
+        let found = table.shares();
+        assert_eq!(found.len(), expected.len());
+        for ((source, share), expected) in found.into_iter().zip(expected) {
+            let (low, high) = share.interval.unwrap();
+            for (found, expected) in [share.value.unwrap(), low, high].into_iter().zip(expected) {
+                assert!((found - expected).abs() < 1e-9, "{source:?}: {found} and {expected}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_no_number_depends_on_has_no_share_and_a_constant_has_none_to_give() {
+        let (table, _) = reference();
+        // The third factor of the reference, shuffled against everything.
+        let idle: Vec<usize> = (0..table.values.len()).map(|at| at * 7 % 5).collect();
+        let with_idle = Table { levels: vec![table.levels[0].clone(), idle], ..table.clone() };
+        let share = with_idle.shares()[1].1;
+        assert!(share.value.unwrap() < 0.05, "{share:?}");
+        let constant = Table { values: vec![0.5; table.values.len()], ..table };
+        assert!(constant.shares().iter().all(|(_, share)| share.value.is_none()));
+    }
+
+    #[test]
+    fn a_table_that_is_too_small_has_no_shares() {
+        let table =
+            Table { values: vec![1.0, 2.0], clusters: vec![1, 2], levels: vec![vec![0, 1], vec![0, 1]] };
+        assert!(table.shares().iter().all(|(_, share)| share.value.is_none()));
+        let empty = Table { values: Vec::new(), clusters: Vec::new(), levels: vec![Vec::new()] };
+        assert!(empty.shares().iter().all(|(_, share)| share.value.is_none()));
     }
 }

@@ -42,7 +42,8 @@ pub fn write_whole(
 /// # Errors
 /// If it cannot be made or written to.
 pub fn prepare_folder(path: &Path) -> Result<(), FileError> {
-    let probe = path.join(".bodyschema.partial");
+    // Others may be looking, too.
+    let probe = path.join(format!(".bodyschema.{}.partial", std::process::id()));
     fs::create_dir_all(path)
         .and_then(|()| File::create(&probe))
         .and_then(|_| fs::remove_file(&probe))

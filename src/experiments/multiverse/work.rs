@@ -128,8 +128,11 @@ fn at_once(design: &Design) -> usize {
 /// If the folder holds another one.
 fn keep_design(text: &str, out: &Path) -> Result<(), ExperimentError> {
     let path = out.join(COPY);
-    if !path.exists() {
-        return Ok(write_text(&path, text)?);
+    if !path.exists()
+        && let Err(error) = write_text(&path, text)
+    {
+        // Another shard may have been first.
+        read_text(&path).map_err(|_| error)?;
     }
     if read_text(&path)? == text {
         return Ok(());

@@ -1,0 +1,48 @@
+#!/usr/bin/env bash
+# Submits a multiverse to Slurm: a job array with a shard for each task, and a job that gathers them. All tasks write into
+# one folder, which all nodes must see. Submit again what failed: finished specifications are not run again.
+set -euo pipefail
+here=$(CDPATH= cd -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")" && pwd)
+root=$(CDPATH= cd -- "$here/../.." && pwd)
+
+usage() {
+    cat <<EOF
+Usage: reproduce/cluster/submit.sh --shards N --out DIR [--design FILE] [--program FILE] [-- SBATCH OPTIONS]
+
+  --shards N      tasks of the job array; at most as many as the design has movements
+  --out DIR       folder that all nodes see
+  --design FILE   design, instead of reproduce/multiverse.toml
+  --program FILE  bodyschema, instead of target/release/bodyschema; a command line in a container works, too:
+                  --program 'apptainer exec bodyschema.sif bodyschema'
+  -- OPTIONS      for sbatch, such as --partition, --account or --time, for both jobs
+
+Each task asks for 2 CPUs, 2 GB and 12 hours unless OPTIONS say otherwise (README.md has the measurement).
+EOF
+}
+
+shards='' out='' design=$root/reproduce/multiverse.toml program=$root/target/release/bodyschema
+while [ $# -gt 0 ]; do
+    case $1 in
+        --shards | --out | --design | --program)
+            [ $# -ge 2 ] || { echo "submit.sh: $1 needs a value" >&2; exit 2; }
+            declare "${1#--}=$2"
+            shift 2 ;;
+        --) shift; break ;;
+        -h | --help) usage; exit 0 ;;
+        *) echo "submit.sh: $1 is no option; see --help" >&2; exit 2 ;;
+    esac
+done
+[[ $shards =~ ^[1-9][0-9]*$ ]] || { echo "submit.sh: --shards must be a positive number; see --help" >&2; exit 2; }
+[ -n "$out" ] || { echo "submit.sh: --out is missing; see --help" >&2; exit 2; }
+[ -r "$design" ] || { echo "submit.sh: $design: cannot be read; name a design by --design" >&2; exit 2; }
+command -v sbatch >/dev/null || { echo "submit.sh: there is no sbatch here; log in to a node that submits jobs" >&2; exit 2; }
+
+mkdir -p -- "$out/logs"
+out=$(readlink -f -- "$out")
+export BODYSCHEMA=$program DESIGN=$(readlink -f -- "$design") OUT=$out SHARDS=$shards
+common=(--parsable --export=ALL --time=12:00:00 --mem=2G)
+array=$(sbatch "${common[@]}" --cpus-per-task=2 --array="0-$((shards - 1))" --output="$out/logs/shard-%a.log" "$@" \
+    "$here/shard.sbatch")
+gather=$(sbatch "${common[@]}" --cpus-per-task=2 --dependency="afterok:${array%%;*}" --kill-on-invalid-dep=yes --output="$out/logs/gather.log" \
+    "$@" "$here/gather.sbatch")
+echo "shards: job ${array%%;*}; gather: job ${gather%%;*}"
