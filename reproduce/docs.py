@@ -161,9 +161,9 @@ def search(results):
     # The last round leaves no candidates, and one without a resolved candidate no winner.
     optional = ["next.toml", "best.toml"]
     there = [name for name in optional if (results / "search" / name).exists()]
-    copy([results / "search" / name for name in ["search.md", "scores.csv", "credits.csv", *there]], SHOWN / "search")
+    copy([results / "search" / name for name in ["search.md", "scores.csv", "credits.csv", *there]], SHOWN / "finalists")
     for name in set(optional) - set(there):
-        (SHOWN / "search" / name).unlink(missing_ok=True)
+        (SHOWN / "finalists" / name).unlink(missing_ok=True)
 
 
 def sensitivity(results):
@@ -190,8 +190,8 @@ def deviations():
     settings = read_settings()
     folder = ROOT / "reproduce"
     study = tomllib.loads((folder / "sensitivity.toml").read_text())
-    # What the search that is shown has varied.
-    with open(SHOWN / "search" / "scores.csv", newline="") as file:
+    # What the first search, whose winner is the default, has varied.
+    with open(SHOWN / "first" / "scores.csv", newline="") as file:
         searched = {key for row in csv.DictReader(file) for key in re.findall(r"([\w.]+) = ", row["settings"])}
     lines = ["| setting | the paper says | ours | reason | source |", "|---|---|---|---|---|"]
     named = set()
