@@ -24,8 +24,8 @@ id = "number-of-parts"
 experiment = "exp1"
 label = "number\nof parts"
 [[claim]]
-id = "ari-over-coordination"
-experiment = "exp2"
+id = "ari-unknown-number"
+experiment = "exp1"
 label = "ARI"
 [[factor]]
 name = "gains"
