@@ -75,14 +75,14 @@ fn succeed(folder: &Path, arguments: &str) {
     assert_eq!(output.status.code(), Some(0), "{output:?}");
 }
 
-/// All files of a folder but its checkpoints, by name.
+/// All files of a folder, by name.
 fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
     let mut all = BTreeMap::new();
     for entry in fs::read_dir(folder).unwrap().map(Result::unwrap) {
         let name = entry.file_name().into_string().unwrap();
         if entry.path().is_file() {
             all.insert(name, fs::read(entry.path()).unwrap());
-        } else if name != "checkpoints" {
+        } else {
             let inner = files(&entry.path()).into_iter();
             all.extend(inner.map(|(inner, bytes)| (format!("{name}/{inner}"), bytes)));
         }
@@ -132,7 +132,12 @@ fn shards_give_the_bytes_of_one_run_and_a_failure_is_a_result() {
         );
     };
     shard("3/3", 2);
-    fs::remove_dir_all(at("shards/specifications/000003")).unwrap_or_default();
+    let finished = || fs::read_dir(at("shards/specifications")).unwrap().map(|entry| entry.unwrap().path());
+    let lost = finished().min().unwrap();
+    fs::remove_dir_all(&lost).unwrap();
+    // What a killed process may leave.
+    fs::create_dir_all(at("shards/specifications/000001.new-1-2.partial")).unwrap();
+    fs::create_dir_all(at("shards/checkpoints/of-a-killed-shard")).unwrap();
     shard("1/3", 1);
     let early = bodyschema(folder.path(), "multiverse --design design.toml --gather --out shards");
     let message = String::from_utf8(early.stderr).unwrap();
@@ -143,6 +148,7 @@ fn shards_give_the_bytes_of_one_run_and_a_failure_is_a_result() {
     }
     succeed(folder.path(), "multiverse --design design.toml --gather --out shards");
     assert_eq!(files(&at("shards")), whole);
+    assert!(!at("shards/checkpoints").exists() && finished().all(|path| path.extension().is_none()));
 
     // Any one can be run again by its number, and by its settings.
     succeed(folder.path(), "multiverse --design design.toml --only 2 --out two");
@@ -173,6 +179,17 @@ fn what_cannot_be_done_is_refused_in_one_line() {
     one_line(refused(&DESIGN.replace("levels = 2 }", "levels = 1 }"), "--out out", "quantise.levels"));
     one_line(refused(&DESIGN.replace("[\"levels\"]", "[\"fins\"]"), "--out out", "groups by `fins`"));
     one_line(refused(DESIGN, "--only 99 --out out", "there is no specification 99"));
+    one_line(refused(&DESIGN.replace("movements = 4", "movements = 70000"), "--out out", "more than 65536"));
+    one_line(refused(
+        &DESIGN.replace("name = \"start\"", "name = \"failed\""),
+        "--out out",
+        "two of `failed`",
+    ));
+    one_line(refused(&DESIGN.replace("label = \"four\"", "label = \"two\""), "--out out", "two of `two`"));
+    one_line(refused(&DESIGN.replace("simulations = 2", "simulations = 1"), "--out out", "one simulation"));
+    let twice = DESIGN
+        .replace("spin_damping = 0.1 }", "spin_damping = 0.1 }\nsettings = { motion = { error = \"raw\" } }");
+    one_line(refused(&twice, "--out out", "gains are of a torque"));
     for shard in ["3/2", "0/2", "1/0", "x", "-1/2"] {
         refused(DESIGN, &format!("--shard={shard} --out out"), "a shard is I/N");
     }
@@ -181,4 +198,9 @@ fn what_cannot_be_done_is_refused_in_one_line() {
     one_line(refused(DESIGN, "--out other", "another design"));
     one_line(refused(DESIGN, "--gather --out other", "another design"));
     one_line(refused(DESIGN, "--gather --out empty", "design.toml"));
+    succeed(folder.path(), "multiverse --design design.toml --out damaged");
+    let claims = at("damaged/specifications/000002/claims.csv");
+    let cut = fs::read_to_string(&claims).unwrap().lines().take(2).collect::<Vec<_>>().join("\n");
+    fs::write(&claims, cut).unwrap();
+    one_line(refused(DESIGN, "--gather --out damaged", "run it again by --only 2"));
 }

@@ -16,7 +16,7 @@ Usage: reproduce/cluster/submit.sh --shards N --out DIR [--design FILE] [--progr
                   --program 'apptainer exec bodyschema.sif bodyschema'
   -- OPTIONS      for sbatch, such as --partition, --account or --time, for both jobs
 
-Each task asks for 2 CPUs, 2 GB and 12 hours unless OPTIONS say otherwise (README.md has the measurement).
+Each task asks for 2 CPUs, 2 GB and 12 hours unless OPTIONS say otherwise.
 EOF
 }
 

@@ -84,20 +84,24 @@ pub fn judge_claim(claim: &Claim, evidence: &Evidence) -> (Estimate, String, Ver
     worst(claim, &measure(&claim.measure, evidence))
 }
 
-/// Of all values that a claim is about, the one that lies farthest towards the outside of its range.
-fn worst(claim: &Claim, measured: &[(String, Estimate)]) -> (Estimate, String, Verdict) {
+/// How far a value lies outside the range of a claim; negative inside.
+pub fn outside(claim: &Claim, value: f64) -> f64 {
     let accept = claim.accept.unwrap_or_default();
     // A bound at the end of a share's scale excludes nothing, so no value is near to it.
     let low = if accept.0 == 0.0 { f64::NEG_INFINITY } else { accept.0 };
     let high = if accept.1 == 1.0 { f64::INFINITY } else { accept.1 };
+    (low - value).max(value - high)
+}
+
+/// Of all values that a claim is about, the one that lies farthest towards the outside of its range.
+fn worst(claim: &Claim, measured: &[(String, Estimate)]) -> (Estimate, String, Verdict) {
     let mut untested = Vec::new();
     let mut worst: Option<(f64, &Estimate, &str)> = None;
     for (place, estimate) in measured {
         match estimate.value {
             None => untested.push(place.as_str()),
             Some(value) => {
-                // How far outside the range; negative inside.
-                let outside = (low - value).max(value - high);
+                let outside = outside(claim, value);
                 if worst.is_none_or(|(most, ..)| outside > most) {
                     worst = Some((outside, estimate, place));
                 }

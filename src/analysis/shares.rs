@@ -2,8 +2,9 @@
 
 use rand::{Rng, RngExt};
 use rand_distr::{Beta, Binomial, Distribution};
+use serde::Serialize;
 
-use super::statistics::{Estimate, quantile};
+use super::statistics::{Estimate, quantile, wilson};
 
 /// Whether something holds in a specification.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -14,16 +15,16 @@ pub struct Held {
     pub holds: bool,
 }
 
-/// The share in which it holds, with a 95 % percentile interval over resamples of the movements: with each go its bodies and
-/// its specifications.
+/// The share in which it holds, with a 95 % percentile interval over resamples of the movements, with which go their bodies,
+/// and of the specifications of each. The interval is never narrower than Wilson's for as many throws as there are movements.
 pub fn share(held: &[Held], rng: &mut impl Rng) -> Estimate {
-    const RESAMPLES: usize = 10_000;
-    let mut movements: Vec<(usize, f64, f64)> = Vec::new();
+    const RESAMPLES: usize = 2_000;
+    let mut movements: Vec<(usize, Vec<f64>)> = Vec::new();
     for one in held {
         let holds = f64::from(u8::from(one.holds));
-        match movements.iter_mut().find(|(movement, ..)| *movement == one.movement) {
-            Some((_, sum, n)) => (*sum, *n) = (*sum + holds, *n + 1.0),
-            None => movements.push((one.movement, holds, 1.0)),
+        match movements.iter_mut().find(|(movement, _)| *movement == one.movement) {
+            Some((_, all)) => all.push(holds),
+            None => movements.push((one.movement, vec![holds])),
         }
     }
     let n = held.len();
@@ -33,39 +34,55 @@ pub fn share(held: &[Held], rng: &mut impl Rng) -> Estimate {
     let value = held.iter().filter(|one| one.holds).count() as f64 / n as f64;
     let mut resampled: Vec<f64> = (0..RESAMPLES)
         .map(|_| {
-            let drawn = (0..movements.len()).map(|_| &movements[rng.random_range(0..movements.len())]);
-            let (sum, n) = drawn.fold((0.0, 0.0), |(sum, n), (_, holds, of)| (sum + holds, n + of));
-            sum / n
+            let (mut sum, mut n) = (0.0, 0);
+            for _ in 0..movements.len() {
+                let (_, all) = &movements[rng.random_range(0..movements.len())];
+                sum += (0..all.len()).map(|_| all[rng.random_range(0..all.len())]).sum::<f64>();
+                n += all.len();
+            }
+            sum / n as f64
         })
         .collect();
     resampled.sort_by(f64::total_cmp);
-    let interval = (movements.len() > 1).then(|| (quantile(&resampled, 0.025), quantile(&resampled, 0.975)));
-    Estimate { value: Some(value), n, interval, simulations: movements.len(), spread: None }
+    let (low, high) = wilson(value * movements.len() as f64, movements.len() as f64);
+    let interval = (quantile(&resampled, 0.025).min(low), quantile(&resampled, 0.975).max(high));
+    Estimate { value: Some(value), n, interval: Some(interval), simulations: movements.len(), spread: None }
 }
 
-/// The rate of a specification, over some eligible draws of some bodies.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// The draws of a specification.
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Rate {
     /// The movement, with its bodies.
     pub movement: usize,
-    /// Successes over draws.
-    pub rate: f64,
+    /// Successes and draws of each body.
+    pub bodies: Vec<(usize, usize)>,
+}
+
+impl Rate {
     /// Number of draws.
-    pub draws: usize,
-    /// Number of bodies that they are from.
-    pub bodies: usize,
-    /// Lowest and highest rate of a single body, where there are several.
-    pub spread: Option<(f64, f64)>,
+    pub fn draws(&self) -> usize {
+        self.bodies.iter().map(|(_, draws)| draws).sum()
+    }
+
+    fn rate(&self) -> f64 {
+        self.bodies.iter().map(|(right, _)| right).sum::<usize>() as f64 / self.draws() as f64
+    }
 }
 
 /// What a multiverse of rates looks like beside those that would be if one rate were true in all of it.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct JointInference {
-    /// Share of the specifications whose rate is in the range.
+    /// Number of specifications.
+    pub n: usize,
+    /// Share of them whose rate is in the range.
     pub share: f64,
-    /// The same in simulated multiverses: the median, and the ends of the middle 95 %.
-    pub expected: (f64, f64, f64),
-    /// Share of simulated multiverses with a share as low as this one's, or lower.
+    /// The same in simulated multiverses: the median.
+    pub expected: f64,
+    /// Lower end of the middle 95 % of simulated multiverses.
+    pub expected_low: f64,
+    /// Upper end of them.
+    pub expected_high: f64,
+    /// Share of simulated multiverses with a share as low as this one's, or lower; this one counts as one of them.
     pub as_low: f64,
     /// How strongly bodies differ in the simulated ones: the variance of their rates over that of single outcomes.
     pub correlation: f64,
@@ -74,9 +91,8 @@ pub struct JointInference {
 /// If `true_rate` were that of every specification, in what share of simulated multiverses would as few rates, or fewer, be
 /// within `range`? After the joint test of Simonsohn, Simmons and Nelson (2020), with simulation in place of permutation.
 ///
-/// Bodies differ: their rates are drawn from a beta distribution, whose variance is that seen between the bodies of one
-/// specification beyond what their numbers of draws explain. All specifications of a movement have the same bodies. `None`
-/// without a rate.
+/// Bodies differ: their rates are drawn from a beta distribution with the correlation that is seen between the draws of one
+/// body. All specifications of a movement have the same bodies; those of one must stand together. `None` without a rate.
 pub fn joint_inference(
     rates: &[Rate],
     true_rate: f64,
@@ -89,61 +105,69 @@ pub fn joint_inference(
         return None;
     }
     let share_of = |count: usize| count as f64 / rates.len() as f64;
-    let share = share_of(rates.iter().filter(|one| inside(one.rate)).count());
-    let correlation = correlation(rates, true_rate);
-    let spread = true_rate * (1.0 - true_rate);
-    let bodies_of = |rng: &mut _, count: usize| -> Vec<f64> {
-        // Var = spread × correlation, so that a + b = 1 / correlation − 1.
-        let both = 1.0 / correlation - 1.0;
-        match Beta::new(true_rate * both, (1.0 - true_rate) * both) {
-            Ok(beta) if correlation > 0.0 && spread > 0.0 => (0..count).map(|_| beta.sample(rng)).collect(),
-            _ => vec![true_rate; count],
-        }
-    };
-    let most = rates.iter().map(|one| one.bodies).max().unwrap_or(1).max(1);
+    let share = share_of(rates.iter().filter(|one| inside(one.rate())).count());
+    let correlation = correlation(rates);
+    // Var = p (1 − p) × correlation, so that a + b = 1 / correlation − 1.
+    let both = 1.0 / correlation - 1.0;
+    let beta = Beta::new(true_rate * both, (1.0 - true_rate) * both).ok().filter(|_| correlation > 0.0);
+    let most = rates.iter().map(|one| one.bodies.len()).max().unwrap_or_default();
     let mut shares: Vec<f64> = (0..MULTIVERSES)
         .map(|_| {
-            let mut movement: Option<(usize, Vec<f64>)> = None;
             let mut count = 0;
-            for one in rates {
-                if movement.as_ref().is_none_or(|(last, _)| *last != one.movement) {
-                    movement = Some((one.movement, bodies_of(rng, most)));
+            for together in rates.chunk_by(|one, other| one.movement == other.movement) {
+                let bodies: Vec<f64> =
+                    (0..most).map(|_| beta.map_or(true_rate, |beta| beta.sample(rng))).collect();
+                for one in together {
+                    let right: u64 = one
+                        .bodies
+                        .iter()
+                        .zip(&bodies)
+                        .map(|((_, draws), rate)| {
+                            Binomial::new(*draws as u64, *rate).expect("a rate").sample(rng)
+                        })
+                        .sum();
+                    count += usize::from(inside(right as f64 / one.draws() as f64));
                 }
-                let bodies = &movement.as_ref().expect("it was drawn").1;
-                let right: u64 = (0..one.bodies.max(1))
-                    .map(|body| {
-                        let draws = shared_out(one.draws, one.bodies.max(1), body) as u64;
-                        Binomial::new(draws, bodies[body]).expect("a rate").sample(rng)
-                    })
-                    .sum();
-                count += usize::from(inside(right as f64 / one.draws.max(1) as f64));
             }
             share_of(count)
         })
         .collect();
     shares.sort_by(f64::total_cmp);
-    let as_low = shares.partition_point(|one| *one <= share) as f64 / shares.len() as f64;
-    let expected = (quantile(&shares, 0.5), quantile(&shares, 0.025), quantile(&shares, 0.975));
-    Some(JointInference { share, expected, as_low, correlation })
+    let as_low = shares.partition_point(|one| *one <= share);
+    Some(JointInference {
+        n: rates.len(),
+        share,
+        expected: quantile(&shares, 0.5),
+        expected_low: quantile(&shares, 0.025),
+        expected_high: quantile(&shares, 0.975),
+        as_low: (as_low + 1) as f64 / (shares.len() + 1) as f64,
+        correlation,
+    })
 }
 
-/// The draws of one of several bodies that share them as evenly as can be.
-fn shared_out(draws: usize, bodies: usize, body: usize) -> usize {
-    draws / bodies + usize::from(body < draws % bodies)
-}
-
-/// The variance of the rates of bodies over that of single outcomes, from specifications of two bodies with draws.
-fn correlation(rates: &[Rate], true_rate: f64) -> f64 {
-    let pairs = rates.iter().filter(|one| one.bodies == 2 && one.draws > 1);
-    let excess: Vec<f64> = pairs
-        .filter_map(|one| {
-            let (low, high) = one.spread?;
-            let by_chance = one.rate * (1.0 - one.rate) * 2.0 / one.draws as f64;
-            Some((high - low).powi(2) / 2.0 - by_chance)
-        })
-        .collect();
-    let mean = excess.iter().sum::<f64>() / excess.len().max(1) as f64;
-    (mean / (true_rate * (1.0 - true_rate))).clamp(0.0, 0.99)
+/// The correlation of two draws of one body, from all specifications with several bodies: the estimator of the analysis of
+/// variance (Ridout, Demetrio and Firth 1999), its parts summed over specifications; not below 0.
+fn correlation(rates: &[Rate]) -> f64 {
+    let (mut above, mut below) = (0.0, 0.0);
+    for one in rates {
+        let bodies: Vec<(f64, f64)> = one
+            .bodies
+            .iter()
+            .filter(|(_, draws)| *draws > 0)
+            .map(|&(right, draws)| (right as f64 / draws as f64, draws as f64))
+            .collect();
+        let (count, draws) = (bodies.len() as f64, one.draws() as f64);
+        if count < 2.0 || draws <= count {
+            continue;
+        }
+        let rate = one.rate();
+        let between = bodies.iter().map(|(own, n)| n * (own - rate).powi(2)).sum::<f64>() / (count - 1.0);
+        let within = bodies.iter().map(|(own, n)| n * own * (1.0 - own)).sum::<f64>() / (draws - count);
+        let size = (draws - bodies.iter().map(|(_, n)| n * n).sum::<f64>() / draws) / (count - 1.0);
+        above += between - within;
+        below += between + (size - 1.0) * within;
+    }
+    if below > 0.0 { (above / below).clamp(0.0, 0.99) } else { 0.0 }
 }
 
 #[cfg(test)]
@@ -156,14 +180,20 @@ mod tests {
         // Ten movements of a hundred specifications that all agree: as much as ten coin throws say.
         let held: Vec<Held> =
             (0..1000).map(|at| Held { movement: at / 100, holds: at / 100 % 2 == 0 }).collect();
-        let share = share(&held, &mut stream(1, 0, "shares", 0));
-        assert_eq!((share.value, share.simulations), (Some(0.5), 10));
-        let (low, high) = share.interval.unwrap();
+        let found = share(&held, &mut stream(1, 0, "shares", 0));
+        assert_eq!((found.value, found.simulations), (Some(0.5), 10));
+        let (low, high) = found.interval.unwrap();
         assert!((0.1..=0.3).contains(&low) && (0.7..=0.9).contains(&high), "{low} to {high}");
+        // What holds nowhere may hold somewhere: the upper end of Wilson's interval for 0 of 10 is 0.278.
+        let never: Vec<Held> = held.iter().map(|one| Held { holds: false, ..*one }).collect();
+        let (low, high) = share(&never, &mut stream(1, 0, "shares", 0)).interval.unwrap();
+        assert!(low == 0.0 && (high - 0.2775).abs() < 0.001, "{low} to {high}");
     }
 
-    fn rates(rate: impl Fn(usize) -> f64, spread: Option<(f64, f64)>) -> Vec<Rate> {
-        (0..200).map(|at| Rate { movement: at / 4, rate: rate(at), draws: 20, bodies: 2, spread }).collect()
+    /// 200 specifications of 50 movements, with two bodies of ten draws each.
+    fn rates(right: impl FnMut(usize) -> [usize; 2]) -> Vec<Rate> {
+        let bodies = (0..200).map(right).map(|[one, other]| vec![(one, 10), (other, 10)]);
+        bodies.enumerate().map(|(at, bodies)| Rate { movement: at / 4, bodies }).collect()
     }
 
     fn inference(rates: &[Rate]) -> JointInference {
@@ -172,23 +202,37 @@ mod tests {
 
     #[test]
     fn a_multiverse_drawn_from_the_rate_looks_like_it_and_another_does_not() {
-        // Of 20 draws at 0.85 between 15 and 19 are right with probability 0.894 (binomial distribution).
         let mut rng = stream(2, 0, "joint", 0);
-        let binomial = Binomial::new(20, 0.85).unwrap();
-        let drawn: Vec<f64> = (0..200).map(|_| binomial.sample(&mut rng) as f64 / 20.0).collect();
-        let found = inference(&rates(|at| drawn[at], Some((0.85, 0.85))));
-        assert!((found.expected.0 - 0.894).abs() < 0.02, "{found:?}");
-        assert!((0.02..0.98).contains(&found.as_low) && found.correlation == 0.0, "{found:?}");
-        let other = inference(&rates(|at| if at % 2 == 0 { 1.0 } else { 0.85 }, Some((0.85, 0.85))));
+        let binomial = Binomial::new(10, 0.85).unwrap();
+        let drawn = rates(|_| [0; 2].map(|_| binomial.sample(&mut rng) as usize));
+        let found = inference(&drawn);
+        // Of 20 draws at 0.85 between 15 and 19 are right with probability 0.894 (binomial distribution).
+        assert!((found.expected - 0.894).abs() < 0.03 && found.correlation < 0.05, "{found:?}");
+        // At the level that all statistical tests here have.
+        assert!((0.001..0.999).contains(&found.as_low), "{found:?}");
+        let other = inference(&rates(|at| if at % 2 == 0 { [10, 10] } else { [9, 8] }));
         assert!(other.as_low < 0.001 && other.share == 0.5, "{other:?}");
     }
 
     #[test]
     fn bodies_that_differ_make_fewer_rates_likely_to_be_in_the_range() {
-        let alike = inference(&rates(|_| 0.85, Some((0.85, 0.85))));
-        let apart = inference(&rates(|_| 0.85, Some((0.5, 1.0))));
-        assert!(apart.correlation > 0.5, "{apart:?}");
-        assert!(apart.expected.0 < alike.expected.0 && apart.expected.1 < alike.expected.1, "{apart:?}");
+        let alike = inference(&rates(|_| [9, 8]));
+        let apart = inference(&rates(|at| if at % 2 == 0 { [10, 7] } else { [6, 10] }));
+        assert!(alike.correlation == 0.0 && apart.correlation > 0.1, "{apart:?}");
+        assert!(apart.expected < alike.expected && apart.expected_low < alike.expected_low, "{apart:?}");
         assert!(joint_inference(&[], 0.85, (0.75, 0.95), &mut stream(1, 0, "joint", 0)).is_none());
+    }
+
+    #[test]
+    fn the_correlation_is_that_of_the_beta_distribution_however_uneven_the_draws() {
+        let mut rng = stream(3, 0, "joint", 0);
+        // Var of Beta(3, 1) over 0.75 × 0.25 is 1 / (3 + 1 + 1).
+        let beta = Beta::new(3.0, 1.0).unwrap();
+        let mut body = |draws: u64| {
+            (Binomial::new(draws, beta.sample(&mut rng)).unwrap().sample(&mut rng) as usize, draws as usize)
+        };
+        let rates: Vec<Rate> =
+            (0..4000).map(|at| Rate { movement: at, bodies: vec![body(16), body(3), body(1)] }).collect();
+        assert!((correlation(&rates) - 0.2).abs() < 0.02, "{}", correlation(&rates));
     }
 }

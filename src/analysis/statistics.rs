@@ -35,18 +35,18 @@ pub fn rate(successes: usize, n: usize) -> Estimate {
     Estimate {
         value: (n > 0).then(|| successes as f64 / n as f64),
         n,
-        interval: (n > 0).then(|| wilson(successes, n)),
+        interval: (n > 0).then(|| wilson(successes as f64, n as f64)),
         ..Estimate::default()
     }
 }
 
-fn wilson(successes: usize, n: usize) -> (f64, f64) {
-    let (k, n) = (successes as f64, n as f64);
+/// Wilson's (1927) score interval of `k` successes of `n` > 0, which need not be whole numbers.
+pub fn wilson(k: f64, n: f64) -> (f64, f64) {
     let p = k / n;
     let centre = (p + Z * Z / (2.0 * n)) / (1.0 + Z * Z / n);
     let half = Z / (1.0 + Z * Z / n) * (p * (1.0 - p) / n + Z * Z / (4.0 * n * n)).sqrt();
     // At the ends the interval touches 0 or 1 exactly; rounding must not push it past or short.
-    let low = if successes == 0 { 0.0 } else { centre - half };
+    let low = if k == 0.0 { 0.0 } else { centre - half };
     let high = if k == n { 1.0 } else { centre + half };
     (low, high)
 }
@@ -55,7 +55,7 @@ fn wilson(successes: usize, n: usize) -> (f64, f64) {
 /// `interval`, minus a published one of (successes, n), n > 0. Newcombe's (1998) hybrid score interval, his
 /// method 10, which takes the interval of each rate as it is.
 pub fn rate_difference(value: f64, interval: (f64, f64), published: (usize, usize)) -> (f64, f64) {
-    let (low, high) = wilson(published.0, published.1);
+    let (low, high) = wilson(published.0 as f64, published.1 as f64);
     let other = published.0 as f64 / published.1 as f64;
     (
         value - other - (value - interval.0).hypot(high - other),
@@ -109,7 +109,9 @@ impl Resamples {
             (0..simulations).for_each(|_| row[rng.random_range(0..simulations)] += 1.0);
             row
         };
-        Self { multiplicities: (0..RESAMPLES).map(draw).collect() }
+        // One simulation is the same however often it is drawn.
+        let resamples = if simulations > 1 { RESAMPLES } else { 0 };
+        Self { multiplicities: (0..resamples).map(draw).collect() }
     }
 
     /// `pooled`, an estimate over the observations of all simulations, with what the simulations differ by:
@@ -315,7 +317,7 @@ mod tests {
         // Nothing differs in any simulation, and yet fifty observations of each know no more than this.
         let (none, (low, high)) = between([0.0; 5], [0.0; 5]);
         assert_eq!(none, 0.0);
-        assert!((low + high).abs() < 1e-12 && (high - wilson(0, 50).1).abs() < 1e-12);
+        assert!((low + high).abs() < 1e-12 && (high - wilson(0.0, 50.0).1).abs() < 1e-12);
         let lacking = resamples.difference((rate(0, 0), &[(0.0, 0); 5]), (rate(1, 5), &[(1.0, 1); 5]));
         assert_eq!(lacking, Estimate::default());
     }

@@ -3,6 +3,11 @@
 //! A linear model with a constant for each level (analysis of variance with sums of squares of type II) is fitted to all
 //! numbers; the share of a factor is ω² (Hays 1963): what the model loses without the factor, less what a factor without
 //! effect would take by chance. The share of a pair is that of its interaction, added to all factors alone.
+//!
+//! Numbers of one unit, such as a movement, are alike for more reasons than the factors, and a factor whose level all numbers
+//! of a unit share takes of that by chance, too. So its chance is measured between units, as in a split-plot design.
+
+use std::collections::{HashMap, HashSet};
 
 use nalgebra::DVector;
 use rayon::prelude::*;
@@ -16,6 +21,8 @@ pub struct Table {
     pub values: Vec<f64>,
     /// What each number shares with others that are not independent of it.
     pub clusters: Vec<usize>,
+    /// For each factor what each number belongs to, within which the factor has one level.
+    pub units: Vec<Vec<usize>>,
     /// For each factor the level of each number.
     pub levels: Vec<Vec<usize>>,
 }
@@ -46,7 +53,12 @@ impl Table {
         let share = |(at, value): (usize, &Option<f64>)| {
             let others: Option<Vec<f64>> = left_out.iter().map(|shares| shares[at]).collect();
             let interval = value.zip(others).and_then(|(value, others)| jackknife(value, &others));
-            Estimate { value: *value, n: self.values.len(), interval, ..Estimate::default() }
+            Estimate {
+                value: value.map(|value| value.max(0.0)),
+                n: self.values.len(),
+                interval,
+                ..Estimate::default()
+            }
         };
         sources.into_iter().zip(all.iter().enumerate().map(share)).collect()
     }
@@ -57,11 +69,12 @@ impl Table {
         Self {
             values: kept.iter().map(|&at| self.values[at]).collect(),
             clusters: of(&self.clusters),
+            units: self.units.iter().map(|units| of(units)).collect(),
             levels: self.levels.iter().map(|levels| of(levels)).collect(),
         }
     }
 
-    /// ω² of each source, not below 0.
+    /// ω² of each source; below 0 where it takes less than by chance.
     fn omega_squared(&self, sources: &[Source]) -> Vec<Option<f64>> {
         let mut constant = Fit::new(&self.values);
         constant.add(&vec![1.0; self.values.len()]);
@@ -91,10 +104,39 @@ impl Table {
             };
             let freedom = self.values.len().checked_sub(full.rank()).filter(|left| *left > 0 && varies)?;
             let error = full.squares() / freedom as f64;
-            let effect = reduced.squares() - full.squares() - (full.rank() - reduced.rank()) as f64 * error;
-            Some((effect / (total + error)).max(0.0))
+            let chance = self.chance(source, &full).unwrap_or(error);
+            let effect = reduced.squares() - full.squares() - (full.rank() - reduced.rank()) as f64 * chance;
+            Some(effect / (total + error))
         };
         sources.iter().map(share).collect()
+    }
+
+    /// Mean square of what is left between the units within which a source has one level; `None` if each number is one.
+    fn chance(&self, source: &Source, fit: &Fit) -> Option<f64> {
+        let units = match *source {
+            Source::Factor(factor) => &self.units[factor],
+            // The finer of the two.
+            Source::Pair(a, b) => {
+                [a, b].map(|factor| &self.units[factor]).into_iter().max_by_key(|units| count(units))?
+            }
+        };
+        let many = count(units);
+        if many == units.len() {
+            return None;
+        }
+        let mut sums: HashMap<usize, (f64, f64)> = HashMap::new();
+        for (unit, left) in units.iter().zip(fit.left.iter()) {
+            let (sum, n) = sums.entry(*unit).or_default();
+            (*sum, *n) = (*sum + left, *n + 1.0);
+        }
+        // In the order of the units, so that every run adds them alike.
+        let mut sums: Vec<(usize, (f64, f64))> = sums.into_iter().collect();
+        sums.sort_by_key(|(unit, _)| *unit);
+        let between: f64 = sums.iter().map(|(_, (sum, n))| sum * sum / n).sum();
+        // Factors that have one level in each of these units take degrees of freedom from them.
+        let coarse = (0..self.levels.len()).filter(|factor| count(&self.units[*factor]) <= many);
+        let taken: usize = coarse.map(|factor| self.levels[factor].iter().max().copied().unwrap_or(0)).sum();
+        many.checked_sub(taken + 1).filter(|left| *left > 0).map(|left| between / left as f64)
     }
 
     /// A column for each level but the first.
@@ -107,13 +149,18 @@ impl Table {
     }
 }
 
+/// How many different ones there are.
+fn count(units: &[usize]) -> usize {
+    units.iter().collect::<HashSet<_>>().len()
+}
+
 /// Half a 95 % interval on both sides of a share, from the shares without each cluster.
 fn jackknife(value: f64, left_out: &[f64]) -> Option<(f64, f64)> {
     let count = left_out.len() as f64;
     let mean = left_out.iter().sum::<f64>() / count;
     let variance = (count - 1.0) / count * left_out.iter().map(|one| (one - mean).powi(2)).sum::<f64>();
     let half = 1.96 * variance.sqrt();
-    (left_out.len() > 1).then(|| ((value - half).max(0.0), (value + half).min(1.0)))
+    (left_out.len() > 1).then(|| ((value - half).clamp(0.0, 1.0), (value + half).clamp(0.0, 1.0)))
 }
 
 /// What least squares leaves of some numbers, column after column.
@@ -162,14 +209,18 @@ impl Fit {
 
 #[cfg(test)]
 mod tests {
+    use rand::RngExt;
+    use rand_distr::StandardNormal;
     use serde::Deserialize;
 
     use super::*;
+    use crate::numerics::rng::{Stream, stream};
 
     #[derive(Deserialize)]
     struct Reference {
         values: Vec<f64>,
         clusters: Vec<usize>,
+        units: Vec<Vec<usize>>,
         levels: Vec<Vec<usize>>,
         /// Value, lower and upper end, of each factor and then of each pair.
         shares: Vec<[f64; 3]>,
@@ -177,8 +228,8 @@ mod tests {
 
     fn reference() -> (Table, Vec<[f64; 3]>) {
         let text = include_str!("../../tests/reference/variance.json");
-        let Reference { values, clusters, levels, shares } = serde_json::from_str(text).unwrap();
-        (Table { values, clusters, levels }, shares)
+        let Reference { values, clusters, units, levels, shares } = serde_json::from_str(text).unwrap();
+        (Table { values, clusters, units, levels }, shares)
     }
 
     #[test]
@@ -199,19 +250,53 @@ mod tests {
         let (table, _) = reference();
         // The third factor of the reference, shuffled against everything.
         let idle: Vec<usize> = (0..table.values.len()).map(|at| at * 7 % 5).collect();
-        let with_idle = Table { levels: vec![table.levels[0].clone(), idle], ..table.clone() };
+        let own: Vec<usize> = (0..table.values.len()).collect();
+        let with_idle = Table {
+            units: vec![own.clone(), own],
+            levels: vec![table.levels[0].clone(), idle],
+            ..table.clone()
+        };
         let share = with_idle.shares()[1].1;
         assert!(share.value.unwrap() < 0.05, "{share:?}");
         let constant = Table { values: vec![0.5; table.values.len()], ..table };
         assert!(constant.shares().iter().all(|(_, share)| share.value.is_none()));
     }
 
+    /// What differs from movement to movement is no share of a factor that only movements have.
+    #[test]
+    fn a_factor_of_whole_units_takes_nothing_of_what_units_differ_by() {
+        let mut rng = stream(1, 0, "variance", 0);
+        let mut excess = |unit_of_factor: bool| -> f64 {
+            let all: f64 = (0..200)
+                .map(|_| {
+                    let units: Vec<usize> = (0..128).map(|at| at / 8).collect();
+                    let effects: Vec<f64> = (0..16).map(|_| rng.sample(StandardNormal)).collect();
+                    let levels = units.iter().map(|unit| unit % 4).collect();
+                    let noise = |unit: &usize, rng: &mut Stream| {
+                        effects[*unit] + rng.sample::<f64, _>(StandardNormal)
+                    };
+                    let values = units.iter().map(|unit| noise(unit, &mut rng)).collect();
+                    let own = if unit_of_factor { units.clone() } else { (0..128).collect() };
+                    let table = Table { values, clusters: units, units: vec![own], levels: vec![levels] };
+                    table.omega_squared(&[Source::Factor(0)])[0].unwrap()
+                })
+                .sum();
+            all / 200.0
+        };
+        let fair = excess(true);
+        assert!(fair.abs() < 0.02, "{fair}");
+        // The twin that takes each number for a unit of its own finds a share where there is none.
+        let naive = excess(false);
+        assert!(naive > 0.05, "{naive}");
+    }
+
     #[test]
     fn a_table_that_is_too_small_has_no_shares() {
-        let table =
-            Table { values: vec![1.0, 2.0], clusters: vec![1, 2], levels: vec![vec![0, 1], vec![0, 1]] };
+        let two = vec![vec![0, 1], vec![0, 1]];
+        let table = Table { values: vec![1.0, 2.0], clusters: vec![1, 2], units: two.clone(), levels: two };
         assert!(table.shares().iter().all(|(_, share)| share.value.is_none()));
-        let empty = Table { values: Vec::new(), clusters: Vec::new(), levels: vec![Vec::new()] };
+        let none = vec![Vec::new()];
+        let empty = Table { values: Vec::new(), clusters: Vec::new(), units: none.clone(), levels: none };
         assert!(empty.shares().iter().all(|(_, share)| share.value.is_none()));
     }
 }

@@ -1,11 +1,12 @@
-//! Simulate the next movement, by one thread, while all others work on the last.
+//! Simulate the next movement, by a thread of its own, while the others work on the last.
 
 use std::thread::{Scope, ScopedJoinHandle};
 
 use super::task::{Task, TaskProgress};
 use crate::stages::simulate::Trajectory;
 
-/// The movements of a list of tasks, of which the next is simulated, by one thread, while all others work on the last.
+/// The movements of a list of tasks, of which the next is simulated while the last is inferred from. Two trajectories are in
+/// memory at a time.
 pub struct Ahead<'scope, 'env> {
     pub scope: &'scope Scope<'scope, 'env>,
     pub tasks: &'env [Task],
@@ -20,7 +21,9 @@ impl Ahead<'_, '_> {
     pub fn movement(&mut self, at: usize) -> Result<Trajectory, String> {
         let (tasks, progress) = (self.tasks, self.progress);
         let movement = match self.next.take() {
-            Some((next, thread)) if next == at => thread.join().expect("no simulation panics"),
+            Some((next, thread)) if self.tasks[next].shares_movement(&self.tasks[at]) => {
+                thread.join().expect("no simulation panics")
+            }
             _ => tasks[at].simulate(&progress[at]),
         };
         let next = (at + 1..tasks.len()).find(|&next| !tasks[next].shares_movement(&tasks[at]));

@@ -2,7 +2,7 @@
 
 use serde::Deserialize;
 
-use crate::analysis::published::{Claim, Experiment};
+use crate::analysis::published::{Claim, Experiment, Measure};
 
 /// A claim that configurations are compared by.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
@@ -20,7 +20,7 @@ impl Compared {
     /// The claim.
     pub fn find<'a>(&self, claims: &'a [Claim]) -> Option<&'a Claim> {
         let same = |claim: &&Claim| claim.id == self.id && claim.experiments.contains(&self.experiment);
-        claims.iter().find(same).filter(|claim| claim.accept.is_some())
+        claims.iter().find(same).filter(|claim| claim.accept.is_some() && is_of_draws(&claim.measure))
     }
 
     /// Whether every one names a claim with a range.
@@ -32,7 +32,18 @@ impl Compared {
             return Ok(());
         };
         let (id, experiment) = (&unknown.id, unknown.experiment.name());
-        let rule = "is no claim with an accepted range of that experiment; see reproduce/published.toml";
-        Err(format!("names `{id}` of {experiment}, which {rule}"))
+        let rule = "is no claim of that experiment with an accepted range for values of its draws";
+        Err(format!("names `{id}` of {experiment}, which {rule}; see reproduce/published.toml"))
     }
+}
+
+/// Whether it is a value of draws alone, and no test of them.
+fn is_of_draws(measure: &Measure) -> bool {
+    !matches!(
+        measure,
+        Measure::BaselineShare { .. }
+            | Measure::BaselineLoss { .. }
+            | Measure::TreeDependence {}
+            | Measure::Nothing { .. }
+    )
 }

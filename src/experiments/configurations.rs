@@ -44,9 +44,10 @@ impl Outcome {
         Conditions::new(records, settings.experiment.simulations, settings.experiment.seed)
     }
 
-    /// The draws that belong to an experiment.
+    /// The draws that belong to an experiment; none if a task failed, for what some simulations gave says nothing of a
+    /// configuration in which others failed.
     pub fn evidence(&self, experiment: Experiment, settings: &Settings) -> Evidence {
-        let conditions = self.conditions(settings, |record| match experiment {
+        let belongs = |record: &Record| match experiment {
             Experiment::Exp1 => {
                 record.coordination == settings.motion.coordination
                     && settings.experiment.dimensions.contains(&record.dimension)
@@ -54,7 +55,8 @@ impl Outcome {
             Experiment::Exp2 => {
                 record.dimension == settings.experiment.dimension && record.model == Model::DpgmmLj
             }
-        });
+        };
+        let conditions = self.conditions(settings, |record| self.failures.is_empty() && belongs(record));
         Evidence { conditions, baselines: Vec::new(), reading: settings.schema.sampler }
     }
 }
@@ -108,6 +110,14 @@ impl<'a> Configurations<'a> {
             }
         }
         Ok(outcomes)
+    }
+
+    /// Removes all checkpoints in the folder, of any configuration.
+    ///
+    /// # Errors
+    /// If they cannot be removed.
+    pub fn clear(&self) -> Result<(), FileError> {
+        self.checkpoints.clear()
     }
 
     /// Removes their checkpoints, once what they gave is kept elsewhere.

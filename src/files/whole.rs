@@ -3,6 +3,7 @@
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
+use std::time::{SystemTime, UNIX_EPOCH};
 
 use super::error::FileError;
 
@@ -43,7 +44,7 @@ pub fn write_whole(
 /// If it cannot be made or written to.
 pub fn prepare_folder(path: &Path) -> Result<(), FileError> {
     // Others may be looking, too.
-    let probe = path.join(format!(".bodyschema.{}.partial", std::process::id()));
+    let probe = path.join(format!(".bodyschema.{}", own("probe")));
     fs::create_dir_all(path)
         .and_then(|()| File::create(&probe))
         .and_then(|_| fs::remove_file(&probe))
@@ -51,7 +52,7 @@ pub fn prepare_folder(path: &Path) -> Result<(), FileError> {
 }
 
 /// Writes a folder that appears whole or not at all: `write` fills one beside it, which then takes its name. What was
-/// there before is replaced.
+/// there before stays until then. Several processes may write the same folder at once; one of them wins.
 ///
 /// # Errors
 /// If any of that fails.
@@ -59,17 +60,56 @@ pub fn write_folder(
     path: &Path,
     write: impl FnOnce(&Path) -> Result<(), FileError>,
 ) -> Result<(), FileError> {
-    let aside = path.with_added_extension("partial");
     let failed = |error: io::Error| FileError::new(path, format!("cannot be written: {error}"));
-    for old in [&aside, path] {
-        match fs::remove_dir_all(old) {
-            Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(failed(error)),
-            _ => {}
+    let (aside, old) = (path.with_added_extension(own("new")), path.with_added_extension(own("old")));
+    fs::create_dir_all(&aside).map_err(failed)?;
+    let written = write(&aside).and_then(|()| {
+        // A folder takes no name that another has.
+        if path.exists() {
+            fs::rename(path, &old).map_err(failed)?;
+        }
+        match fs::rename(&aside, path) {
+            Err(error) if !path.exists() => Err(failed(error)),
+            _ => Ok(()),
+        }
+    });
+    // What counts is there, or the first error.
+    let _ = fs::remove_dir_all(&aside);
+    let _ = fs::remove_dir_all(&old);
+    written
+}
+
+/// Writes a text that several processes may write at once, all of them the same.
+///
+/// # Errors
+/// As for [`write_whole`].
+pub fn write_same_text(path: &Path, text: &str) -> Result<(), FileError> {
+    let aside = path.with_added_extension(own("new"));
+    write_text(&aside, text)?;
+    fs::rename(&aside, path).map_err(|error| FileError::new(path, format!("cannot be written: {error}")))
+}
+
+/// Removes what processes that were killed left of [`write_folder`] in a folder. None may be at work in it.
+///
+/// # Errors
+/// If it cannot be removed.
+pub fn remove_partial(folder: &Path) -> Result<(), FileError> {
+    let failed = |error: io::Error| FileError::new(folder, format!("cannot be put in order: {error}"));
+    for entry in fs::read_dir(folder).map_err(failed)? {
+        let path = entry.map_err(failed)?.path();
+        if path.extension().is_some_and(|extension| extension == PARTIAL) {
+            fs::remove_dir_all(&path).map_err(failed)?;
         }
     }
-    fs::create_dir_all(&aside).map_err(failed)?;
-    write(&aside)?;
-    fs::rename(&aside, path).map_err(failed)
+    Ok(())
+}
+
+const PARTIAL: &str = "partial";
+
+/// An extension that no other process has, on this machine or another one.
+fn own(what: &str) -> String {
+    let now = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_nanos());
+    format!("{what}-{}-{now:x}.{PARTIAL}", std::process::id())
 }
 
 /// [`write_whole`] for text.

@@ -31,7 +31,19 @@ def residual(matrix, y):
     return ((y - fitted) ** 2).sum(), rank
 
 
-def omega_squared(levels, y, source):
+def chance(levels, units, fitted_residuals, source):
+    """Mean square between the units of a source, or None if every number is a unit."""
+    own = max((units[f] for f in source), key=lambda one: len(set(one)))
+    many = len(set(own))
+    if many == len(own):
+        return None
+    own = np.array(own)
+    between = sum(fitted_residuals[own == unit].sum() ** 2 / (own == unit).sum() for unit in sorted(set(own)))
+    taken = sum(max(level) for level, unit in zip(levels, units) if len(set(unit)) <= many)
+    return between / (many - taken - 1)
+
+
+def omega_squared(levels, units, y, source):
     everything = range(len(levels))
     if len(source) == 1:
         full = model(levels, everything)
@@ -42,30 +54,38 @@ def omega_squared(levels, y, source):
     total = ((y - y.mean()) ** 2).sum()
     with_it, rank = residual(full, y)
     without, rank_without = residual(reduced, y)
+    left = y - full @ np.linalg.pinv(full, rcond=1e-10) @ y
     error = with_it / (len(y) - rank)
-    return max((without - with_it - (rank - rank_without) * error) / (total + error), 0.0)
+    by_chance = chance(levels, units, left, source)
+    by_chance = error if by_chance is None else by_chance
+    return (without - with_it - (rank - rank_without) * by_chance) / (total + error)
 
 
 def main():
     rng = np.random.default_rng(15)
-    n, counts = 120, [3, 2, 4]
-    levels = [rng.integers(0, k, n).tolist() for k in counts]
-    a, b, c = (np.array(one) for one in levels)
-    y = 0.5 * a + np.where(b == 1, 1.0, 0.0) * np.where(c == 2, 1.5, 0.0) + rng.normal(size=n)
+    # Twelve movements of two matrices of distances of five numbers each.
+    n = 120
     clusters = (np.arange(n) // 10).tolist()
+    felt = (np.arange(n) // 5).tolist()
+    units = [clusters, felt, list(range(n))]
+    levels = [(np.array(clusters) % 3).tolist(), rng.integers(0, 2, 24)[felt].tolist(), rng.integers(0, 4, n).tolist()]
+    a, b, c = (np.array(one) for one in levels)
+    y = 1.2 * a + 0.8 * b + np.where(b == 1, 1.0, 0.0) * np.where(c == 2, 2.5, 0.0) + rng.normal(size=n)
+    y += 0.7 * rng.normal(size=12)[clusters] + 0.3 * rng.normal(size=24)[felt]
     sources = [[0], [1], [2], [0, 1], [0, 2], [1, 2]]
     shares = []
     for source in sources:
-        value = omega_squared(levels, y, source)
+        value = omega_squared(levels, units, y, source)
         out = []
         for cluster in sorted(set(clusters)):
             keep = np.array(clusters) != cluster
-            out.append(omega_squared([np.array(one)[keep].tolist() for one in levels], y[keep], source))
+            some = [[np.array(one)[keep].tolist() for one in all_] for all_ in (levels, units)]
+            out.append(omega_squared(*some, y[keep], source))
         out = np.array(out)
         m = len(out)
         half = 1.96 * np.sqrt((m - 1) / m * ((out - out.mean()) ** 2).sum())
-        shares.append([value, max(value - half, 0.0), min(value + half, 1.0)])
-    table = {"values": y.tolist(), "clusters": clusters, "levels": levels, "shares": shares}
+        shares.append([max(value, 0.0), np.clip(value - half, 0.0, 1.0), np.clip(value + half, 0.0, 1.0)])
+    table = {"values": y.tolist(), "clusters": clusters, "units": units, "levels": levels, "shares": shares}
     path = os.path.join(os.path.dirname(os.path.abspath(__file__)), "variance.json")
     with open(path, "w") as file:
         json.dump(table, file)

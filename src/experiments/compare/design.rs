@@ -74,6 +74,16 @@ impl Design {
             settings.experiment.seed = self.seed;
             Ok(settings)
         };
-        self.configurations.iter().map(of).collect()
+        let all: Vec<Settings> =
+            self.configurations.iter().map(of).collect::<Result<_, ExperimentError>>()?;
+        let simulations = all[0].experiment.simulations;
+        match self.configurations.iter().zip(&all).find(|(_, one)| one.experiment.simulations != simulations)
+        {
+            None => Ok(all),
+            Some((other, _)) => {
+                let message = "has another number of simulations than the first; give all of them the same";
+                Err(ExperimentError::design(&format!("the configuration {}", other.name), message))
+            }
+        }
     }
 }

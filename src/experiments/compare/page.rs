@@ -53,7 +53,11 @@ impl Page<'_> {
         let (header, values) = values.split_at(2);
         lines.extend(header.iter().cloned().chain(std::iter::once(accepted)).chain(values.iter().cloned()));
         lines.push(format!("\n## Changes from “{}”\n", configurations[0].name));
-        lines.push("Bold: the interval excludes 0. Simulations are drawn in pairs.\n".to_owned());
+        lines.push(
+            "Bold: the interval excludes 0. Of a claim over several conditions, the one counts that decides the first \
+             configuration's value, among those at which both have one. Simulations are drawn in pairs.\n"
+                .to_owned(),
+        );
         lines.extend(self.table(&|row, unit| {
             let ends = row.change_low.zip(row.change_high);
             let change = with_interval(row.change, ends, unit);
@@ -74,7 +78,7 @@ impl Page<'_> {
         let mut words = flat(&configuration.settings);
         let own = self.rows.iter().find(|row| row.configuration == configuration.name);
         if let Some(row) = own.filter(|row| row.failed > 0) {
-            words.push(format!("{} simulations failed: {}", row.failed, row.failure));
+            words.push(format!("{} movements failed: {}", row.failed, row.failure));
         } else if own.is_some_and(|row| !row.resolved) {
             words.push("the step does not resolve its movements".to_owned());
         }

@@ -43,7 +43,7 @@ pub struct Row {
     pub change_high: Option<f64>,
     /// Whether the physics step resolves all movements.
     pub resolved: bool,
-    /// Simulations that failed.
+    /// Movements that failed.
     pub failed: usize,
     /// The first failure's reason.
     pub failure: String,
@@ -71,7 +71,8 @@ impl Tried<'_> {
         } else {
             change(claim, &evidence(first), &own, self.settings.experiment.seed)
         };
-        let (change_low, change_high) = change.and_then(|change| change.interval).unzip();
+        let (change, ends) = change.unzip();
+        let (change_low, change_high) = ends.flatten().unzip();
         let (accepted_low, accepted_high) = claim.accept.expect("the design was checked");
         let failures = &self.outcome.failures;
         Row {
@@ -84,7 +85,7 @@ impl Tried<'_> {
             cells: (&found).into(),
             found: place,
             verdict,
-            change: change.and_then(|change| change.value),
+            change,
             change_low,
             change_high,
             resolved: failures.is_empty() && self.outcome.resolution.is_resolved(),

@@ -1,5 +1,6 @@
 //! Read the design of a multiverse: the open settings, their reasonable values, and how many readings are drawn.
 
+use std::collections::HashSet;
 use std::f64::consts::PI;
 
 use serde::Deserialize;
@@ -10,6 +11,22 @@ use super::super::design::merge;
 use super::super::error::ExperimentError;
 use crate::analysis::published::claims;
 use crate::settings::Settings;
+
+/// Most specifications of a design, and most factors: what the sequence has that they are drawn by.
+const MOST_SPECIFICATIONS: usize = 1 << 16;
+const MOST_FACTORS: usize = 1 << 8;
+
+/// Columns of specifications.csv beside those of the factors.
+pub const COLUMNS: [&str; 8] = [
+    "specification",
+    "movement",
+    "distances",
+    "resolved",
+    "anchor_separation_m",
+    "turn",
+    "failed",
+    "failure",
+];
 
 /// What is drawn, and how each specification is run.
 #[derive(Debug, Clone, Deserialize)]
@@ -120,11 +137,54 @@ impl Design {
                 "draws nothing: movements, distances and inferences must be positive".to_owned(),
             ));
         }
+        let points = movements.checked_mul(distances).and_then(|felt| felt.checked_mul(inferences));
+        if points.is_none_or(|points| points > MOST_SPECIFICATIONS) || design.factors.len() > MOST_FACTORS {
+            let message = format!(
+                "draws more than {MOST_SPECIFICATIONS} specifications, or of more than {MOST_FACTORS} factors"
+            );
+            return Err(wrong(message));
+        }
+        design.check_names().map_err(wrong)?;
+        design.check_gains().map_err(wrong)?;
         if design.claims.is_empty() {
             return Err(wrong("judges no claim; add a [[claim]]".to_owned()));
         }
         Compared::check(&design.claims, &claims()).map_err(wrong)?;
         Ok(design)
+    }
+
+    /// Whether every name is of one thing alone.
+    fn check_names(&self) -> Result<(), String> {
+        let once = |names: Vec<&str>, what: &str| {
+            let mut known = HashSet::new();
+            match names.into_iter().find(|name| !known.insert(*name)) {
+                Some(twice) => Err(format!("has two of `{twice}` among {what}; give each a name of its own")),
+                None => Ok(()),
+            }
+        };
+        let factors = self.factors.iter().map(|factor| factor.name.as_str());
+        once(COLUMNS.into_iter().chain(factors).collect(), "factors and columns of specifications.csv")?;
+        once(self.claims.iter().map(|claim| claim.id.as_str()).collect(), "claims")?;
+        let grouping = self.factors.iter().filter(|factor| self.groups.contains(&factor.name));
+        once(grouping.flat_map(Factor::labels).collect(), "options that make groups")?;
+        self.factors
+            .iter()
+            .try_for_each(|factor| once(factor.labels().collect(), &format!("options of {}", factor.name)))
+    }
+
+    /// Whether gains come from one place alone.
+    fn check_gains(&self) -> Result<(), String> {
+        let with_gains = |factor: &&Factor| factor.options.iter().any(|option| option.gains.is_some());
+        if self.factors.iter().filter(with_gains).count() > 1 {
+            return Err("has gains in two factors; put them into one".to_owned());
+        }
+        let both = |option: &&Choice| option.gains.is_some() && option.settings.contains_key("motion");
+        match self.factors.iter().flat_map(|factor| &factor.options).find(both) {
+            Some(option) => {
+                Err(format!("has gains and settings of motion in `{}`; gains are of a torque", option.label))
+            }
+            None => Ok(()),
+        }
     }
 
     /// The settings of a specification, given the option of each factor, and the seed of its movement.
@@ -146,7 +206,17 @@ impl Design {
             settings = Settings::overlaid([&table, &motion], &origin)?;
         }
         settings.experiment.seed = seed;
+        if settings.experiment.simulations < 2 {
+            let message = "has one simulation; bodies differ, so let there be two at least";
+            return Err(ExperimentError::design(&origin, message));
+        }
         Ok(settings)
+    }
+}
+
+impl Factor {
+    fn labels(&self) -> impl Iterator<Item = &str> {
+        self.options.iter().map(|option| option.label.as_str())
     }
 }
 

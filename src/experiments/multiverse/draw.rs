@@ -1,13 +1,13 @@
 //! Draw specifications evenly from all combinations of reasonable values.
 //!
-//! Options come from an Owen-scrambled Sobol sequence (Burley 2020, "Practical hash-based Owen scrambling"), in which any
-//! run of draws covers the values of each factor, and the pairs of any two, more evenly than independent draws would.
+//! Options come from an Owen-scrambled Sobol sequence (Burley 2020, "Practical hash-based Owen scrambling"), whose first 2^k
+//! points cover the values of each factor, and the pairs of any two, more evenly than independent draws would.
 
 use std::collections::HashSet;
 
 use sobol_burley::sample;
 
-use super::design::{Decides, Design, Draws};
+use super::design::{Decides, Design, Draws, Factor};
 
 /// A reading of the paper: an option of each factor.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -16,6 +16,8 @@ pub struct Drawn {
     pub number: usize,
     /// The movement that it shares with others, from 1.
     pub movement: usize,
+    /// The matrix of distances that it shares with others, from 1.
+    pub distances: usize,
     /// The option of each factor of the design.
     pub options: Vec<usize>,
 }
@@ -32,7 +34,8 @@ pub fn specifications(design: &Design) -> Vec<Drawn> {
                 let places = [movement, felt, felt * inferences + inference];
                 let options = options(design, places);
                 if known.insert((movement, options.clone())) {
-                    all.push(Drawn { number: all.len() + 1, movement: movement + 1, options });
+                    let number = all.len() + 1;
+                    all.push(Drawn { number, movement: movement + 1, distances: felt + 1, options });
                 }
             }
         }
@@ -42,13 +45,13 @@ pub fn specifications(design: &Design) -> Vec<Drawn> {
 
 /// The option of each factor, given the places in the sequences of movements, distances and inferences.
 fn options(design: &Design, places: [usize; 3]) -> Vec<usize> {
-    let option = |(dimension, factor): (usize, &super::design::Factor)| {
+    let option = |(dimension, factor): (usize, &Factor)| {
         let place = match factor.decides {
             Decides::Movement => places[0],
             Decides::Distances => places[1],
             Decides::Inference => places[2],
         };
-        // Sequences have 2^16 points and 2^8 dimensions.
+        // The design was checked: sequences have 2^16 points and 2^8 dimensions.
         let uniform = sample(place as u32, dimension as u32, design.seed as u32);
         ((f64::from(uniform) * factor.options.len() as f64) as usize).min(factor.options.len() - 1)
     };

@@ -3,7 +3,7 @@
 
 use serde::Serialize;
 
-use super::design::{Design, Factor};
+use super::design::{Decides, Design, Factor};
 use super::specification::Specification;
 use crate::analysis::claims::Verdict;
 use crate::analysis::published::{Claim, HEADLINE, claims};
@@ -151,9 +151,18 @@ impl<'a> Evaluation<'a> {
                 let label = one.label(&factor.name);
                 factor.options.iter().position(|option| option.label == label).unwrap_or_default()
             };
+            let unit = |factor: &&Factor| -> Vec<usize> {
+                let unit = |(place, one): (usize, &&Specification)| match factor.decides {
+                    Decides::Movement => one.summary.movement,
+                    Decides::Distances => one.summary.distances,
+                    Decides::Inference => place,
+                };
+                with.iter().enumerate().map(unit).collect()
+            };
             let table = Table {
                 values: with.iter().filter_map(|one| one.rows[at].value).collect(),
                 clusters: with.iter().map(|one| one.summary.movement).collect(),
+                units: factors.iter().map(unit).collect(),
                 levels: factors
                     .iter()
                     .map(|factor| with.iter().map(|one| level(factor, one)).collect())
@@ -180,17 +189,11 @@ impl<'a> Evaluation<'a> {
     fn joint_inference(&self) -> Option<JointInference> {
         let at = self.design.claims.iter().position(|compared| compared.id == HEADLINE)?;
         let claim = &self.claims[at];
-        let rate = |one: &Specification| {
-            let row = &one.rows[at];
-            Some(Rate {
-                movement: one.summary.movement,
-                rate: row.value?,
-                draws: row.cells.n,
-                bodies: row.cells.simulations.max(1),
-                spread: row.cells.lowest.zip(row.cells.highest),
-            })
+        let rate = |one: &Specification| Rate {
+            movement: one.summary.movement,
+            bodies: one.summary.headline.iter().map(|&[right, eligible]| (right, eligible)).collect(),
         };
-        let rates: Vec<Rate> = self.all.iter().filter_map(rate).collect();
+        let rates: Vec<Rate> = self.all.iter().map(rate).filter(|rate| rate.draws() > 0).collect();
         joint_inference(&rates, claim.published?, claim.accept?, &mut stream(self.design.seed, 0, "joint", 0))
     }
 

@@ -5,8 +5,9 @@ use std::path::Path;
 use serde::Serialize;
 use serde_json::{Map, Value};
 
+use super::super::configurations::Configurations;
 use super::super::error::ExperimentError;
-use super::design::Design;
+use super::design::{COLUMNS, Design};
 use super::draw::specifications;
 use super::evaluation::Evaluation;
 use super::page::page;
@@ -14,7 +15,7 @@ use super::specification::{self, Row, Specification};
 use super::work::COPY;
 use crate::files::manifest::Manifest;
 use crate::files::result_folder::ResultFolder;
-use crate::files::{FileError, read_text};
+use crate::files::{FileError, read_text, remove_partial};
 use crate::report::plot::specifications as curve;
 
 /// A row of multiverse.csv.
@@ -27,7 +28,7 @@ struct NumberedRow<'a> {
     row: &'a Row,
 }
 
-/// Gathers all specifications in `out`, and writes: specifications.csv, multiverse.csv, shares.csv, variance.csv, figures/
+/// Gathers all specifications in `out`, and writes: specifications.csv, multiverse.csv, shares.csv, variance.csv, joint.csv, figures/
 /// and multiverse.md.
 ///
 /// # Errors
@@ -39,6 +40,9 @@ pub fn gather(design: &Design, text: &str, out: &Path) -> Result<(), ExperimentE
         return Err(FileError::new(&path, message).into());
     }
     let all = read_all(design, out)?;
+    // What shards that were killed left: nobody is at work any more.
+    remove_partial(&out.join("specifications"))?;
+    Configurations::new(&[], out).clear()?;
     let mut folder = ResultFolder::new(out);
     folder.remember([COPY.to_owned()]);
     folder.write_rows("specifications.csv", all.iter().map(|one| row_of(design, one)))?;
@@ -55,6 +59,7 @@ pub fn gather(design: &Design, text: &str, out: &Path) -> Result<(), ExperimentE
     let evaluation = Evaluation::new(design, &all);
     folder.write_rows("shares.csv", &evaluation.shares)?;
     folder.write_rows("variance.csv", &evaluation.variance)?;
+    folder.write_rows("joint.csv", evaluation.joint)?;
     for at in 0..design.claims.len() {
         let picture = curve::render(&evaluation.curve(at));
         let picture = picture.map_err(|error| FileError::new(out, error.0))?;
@@ -68,13 +73,13 @@ pub fn gather(design: &Design, text: &str, out: &Path) -> Result<(), ExperimentE
 fn read_all(design: &Design, out: &Path) -> Result<Vec<Specification>, ExperimentError> {
     let (mut all, mut missing) = (Vec::new(), Vec::new());
     for drawn in specifications(design) {
-        match specification::read(out, drawn.number)? {
+        match specification::read(out, design, drawn.number)? {
             Some(found) => all.push(found),
             None => missing.push(drawn.number),
         }
     }
     match missing.first() {
-        None => Ok(all),
+        None => one_program(all, out),
         Some(first) => {
             let message = format!(
                 "lacks {} of {} specifications, {first} the first of them; run their shards before they are gathered",
@@ -86,18 +91,31 @@ fn read_all(design: &Design, out: &Path) -> Result<Vec<Specification>, Experimen
     }
 }
 
+/// All specifications, if one program ran them.
+fn one_program(all: Vec<Specification>, out: &Path) -> Result<Vec<Specification>, ExperimentError> {
+    let Some(other) = all.iter().find(|one| one.summary.revision != all[0].summary.revision) else {
+        return Ok(all);
+    };
+    let message = format!(
+        "specifications 1 and {} are of two revisions of this program; run all of them by one, in a new folder",
+        other.summary.number
+    );
+    Err(FileError::new(&out.join("specifications"), message).into())
+}
+
 /// What a specification is, and whether the step resolved it: a row of specifications.csv, with a column for each factor.
 fn row_of(design: &Design, one: &Specification) -> Map<String, Value> {
     let summary = &one.summary;
-    let fixed = [
-        ("specification", summary.number.into()),
-        ("movement", summary.movement.into()),
-        ("resolved", summary.resolved.into()),
-        ("anchor_separation_m", summary.anchor_separation.into()),
-        ("turn", summary.turn.into()),
-        ("failed", summary.failed.into()),
-        ("failure", summary.failure.as_str().into()),
+    let fixed: [Value; COLUMNS.len()] = [
+        summary.number.into(),
+        summary.movement.into(),
+        summary.distances.into(),
+        summary.resolved.into(),
+        summary.anchor_separation.into(),
+        summary.turn.into(),
+        summary.failed.into(),
+        summary.failure.as_str().into(),
     ];
     let factors = design.factors.iter().map(|factor| (factor.name.as_str(), one.label(&factor.name).into()));
-    fixed.into_iter().chain(factors).map(|(name, value)| (name.to_owned(), value)).collect()
+    COLUMNS.into_iter().zip(fixed).chain(factors).map(|(name, value)| (name.to_owned(), value)).collect()
 }

@@ -18,8 +18,8 @@ pub fn page(evaluation: &Evaluation) -> String {
     lines.push("\n## In what share does each claim hold?\n".to_owned());
     lines.push(
         "A claim holds in a specification if its value is within the accepted range; without a value it does not hold. \
-         Intervals are 95 % intervals over resamples of the movements, with which go their bodies and their \
-         specifications. All numbers: [shares.csv](shares.csv).\n"
+         Intervals are 95 % intervals over resamples of the movements, with which go their bodies, and of the \
+         specifications of each. All numbers: [shares.csv](shares.csv).\n"
             .to_owned(),
     );
     lines.extend(shares(evaluation));
@@ -76,11 +76,12 @@ fn answer(evaluation: &Evaluation) -> String {
         );
     }
     if let Some(joint) = &evaluation.joint {
-        let (middle, low, high) = joint.expected;
+        let (middle, low, high) = (joint.expected, joint.expected_low, joint.expected_high);
         let percent = |share: f64| numbers::value(Some(share), Some(Unit::Rate));
         words += &format!(
-            " If the published rate were true in every one that has a rate, {} of them would be within the range by chance \
+            " If the published rate were true in every one of the {} whose draws are of separate chains, {} of them would be within the range by chance \
              (95 % of simulated multiverses: {} to {}), where {} are: {} of simulated multiverses have as few.",
+            joint.n,
             percent(middle),
             percent(low),
             percent(high),
@@ -92,18 +93,19 @@ fn answer(evaluation: &Evaluation) -> String {
 }
 
 fn in_words(row: &ShareRow) -> String {
-    format!(
-        "{} ({})",
-        numbers::value(row.share, Some(Unit::Rate)),
-        numbers::range(row.low.zip(row.high), Some(Unit::Rate))
-    )
+    with_ends(row.share, row.low.zip(row.high), " (", ")")
 }
 
 fn variance(row: &VarianceRow) -> String {
-    let value = numbers::value(row.share, Some(Unit::Rate));
-    match row.low.zip(row.high) {
-        Some(ends) => format!("{value}, {}", numbers::range(Some(ends), Some(Unit::Rate))),
-        None => value,
+    with_ends(row.share, row.low.zip(row.high), ", ", "")
+}
+
+/// A share with its interval, where there is one.
+fn with_ends(share: Option<f64>, ends: Option<(f64, f64)>, open: &str, close: &str) -> String {
+    let share = numbers::value(share, Some(Unit::Rate));
+    match ends {
+        Some(_) => format!("{share}{open}{}{close}", numbers::range(ends, Some(Unit::Rate))),
+        None => share,
     }
 }
 

@@ -15,7 +15,9 @@ use crate::analysis::claims::{Verdict, judge_claim};
 use crate::analysis::published::{Claim, Experiment};
 use crate::files::tables::{read_rows, write_rows};
 use crate::files::{FileError, read_text, write_folder, write_text};
+use crate::pipeline::Condition;
 use crate::settings::Settings;
+use crate::stages::schema::{Keep, Model};
 
 /// What a specification gave beside its claims: `specification.toml`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -25,13 +27,20 @@ pub struct Summary {
     pub number: usize,
     /// The movement that it shares with others, from 1.
     pub movement: usize,
+    /// The matrix of distances that it shares with others, from 1.
+    pub distances: usize,
+    /// Revision of the program that ran it.
+    pub revision: String,
+    /// Right trees and eligible draws of each body at the condition of the headline; empty where a chain keeps all its
+    /// draws, which are not independent.
+    pub headline: Vec<[usize; 2]>,
     /// Whether the physics step resolves all its movements.
     pub resolved: bool,
     /// Largest distance between two ends of a joint, m.
     pub anchor_separation: f64,
     /// Largest turn of a part in a step.
     pub turn: f64,
-    /// Simulations that failed.
+    /// Movements that failed.
     pub failed: usize,
     /// The first failure's reason.
     pub failure: String,
@@ -94,18 +103,15 @@ pub fn write(
     settings: &Settings,
     outcome: &Outcome,
 ) -> Result<(), ExperimentError> {
-    // What some simulations gave says nothing of a specification in which others failed.
-    let nothing = Outcome::default();
-    let seen = if outcome.failures.is_empty() { outcome } else { &nothing };
     let row = |compared: &Compared| {
         let claim = compared.find(claims).expect("the design was checked");
-        let (found, place, verdict) = judge_claim(claim, &seen.evidence(compared.experiment, settings));
+        let (found, place, verdict) = judge_claim(claim, &outcome.evidence(compared.experiment, settings));
         Row {
             claim: compared.id.clone(),
             experiment: compared.experiment,
             value: found.value,
             cells: (&found).into(),
-            found: place,
+            found: outcome.failures.first().map_or(place, |failure| failure.reason.clone()),
             verdict,
         }
     };
@@ -117,6 +123,9 @@ pub fn write(
     let summary = Summary {
         number: drawn.number,
         movement: drawn.movement,
+        distances: drawn.distances,
+        revision: env!("BODYSCHEMA_REVISION").to_owned(),
+        headline: headline(settings, outcome),
         resolved: failures.is_empty() && outcome.resolution.is_resolved(),
         anchor_separation: outcome.resolution.anchor_separation,
         turn: outcome.resolution.turn,
@@ -140,12 +149,29 @@ pub fn write(
 ///
 /// # Errors
 /// If a file is not what [`write`] wrote.
-pub fn read(out: &Path, number: usize) -> Result<Option<Specification>, ExperimentError> {
+pub fn read(out: &Path, design: &Design, number: usize) -> Result<Option<Specification>, ExperimentError> {
     let folder = folder(out, number);
     if !folder.exists() {
         return Ok(None);
     }
     let path = folder.join(SUMMARY);
     let summary = toml::from_str(&read_text(&path)?).map_err(|error| FileError::new(&path, error))?;
-    Ok(Some(Specification { summary, rows: read_rows(&folder.join(CLAIMS))? }))
+    let found = Specification { summary, rows: read_rows(&folder.join(CLAIMS))? };
+    let claims = found.rows.iter().map(|row| row.claim.as_str());
+    if found.summary.number != number || !claims.eq(design.claims.iter().map(|claim| claim.id.as_str())) {
+        let message = format!("is not what was written; run it again by --only {number}");
+        return Err(FileError::new(&folder, message).into());
+    }
+    Ok(Some(found))
+}
+
+/// Right trees and eligible draws of each body at the condition of the headline.
+fn headline(settings: &Settings, outcome: &Outcome) -> Vec<[usize; 2]> {
+    if settings.schema.keep == Keep::All || !outcome.failures.is_empty() {
+        return Vec::new();
+    }
+    let conditions = outcome.conditions(settings, |_| true);
+    let (coordination, dimension) = (settings.motion.coordination, settings.experiment.dimension);
+    let trees = conditions.trees(Condition { model: Model::DpgmmLj, coordination, dimension });
+    trees.iter().map(|trees| [trees.iter().filter(|right| **right == 1.0).count(), trees.len()]).collect()
 }

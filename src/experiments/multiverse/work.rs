@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
+use std::time::{Duration, Instant};
 
 use super::super::configurations::Configurations;
 use super::super::error::ExperimentError;
@@ -10,7 +11,7 @@ use super::design::Design;
 use super::draw::{Drawn, specifications};
 use super::specification;
 use crate::analysis::published::claims;
-use crate::files::{FileError, read_text, write_text};
+use crate::files::{FileError, read_text, write_same_text};
 use crate::settings::Settings;
 
 /// Where the design is kept beside the results.
@@ -70,9 +71,8 @@ pub fn work(design: &Design, text: &str, shard: Shard, out: &Path) -> Result<(),
             movements.iter().flatten().map(|(_, settings)| settings.clone()).collect();
         Configurations::new(&settings, out)
     };
-    let length = movements.iter().map(|one| configurations(std::slice::from_ref(one)).length()).sum();
-    let bar = progress(length, format!("{} specifications", left.len()));
-    let claims = claims();
+    let bar = progress(configurations(&movements).length(), format!("{} specifications", left.len()));
+    let (claims, begun, mut finished) = (claims(), Instant::now(), 0);
     for together in movements.chunks(at_once(design)) {
         let configurations = configurations(together);
         let outcomes = configurations.run(&bar)?;
@@ -80,9 +80,20 @@ pub fn work(design: &Design, text: &str, shard: Shard, out: &Path) -> Result<(),
             specification::write(out, design, &claims, drawn, settings, outcome)?;
         }
         configurations.forget()?;
+        finished += outcomes.len();
+        if bar.is_hidden() {
+            tell(finished, left.len(), begun.elapsed());
+        }
     }
     bar.finish_and_clear();
     Ok(())
+}
+
+/// Says in a log how far the work is.
+fn tell(finished: usize, all: usize, spent: Duration) {
+    let left = spent.mul_f64((all - finished) as f64 / finished as f64);
+    let left = humantime::format_duration(Duration::from_secs(left.as_secs()));
+    eprintln!("bodyschema: {finished} of {all} specifications are finished; about {left} left");
 }
 
 /// Runs one specification, whether or not it is finished, and returns its folder.
@@ -128,11 +139,9 @@ fn at_once(design: &Design) -> usize {
 /// If the folder holds another one.
 fn keep_design(text: &str, out: &Path) -> Result<(), ExperimentError> {
     let path = out.join(COPY);
-    if !path.exists()
-        && let Err(error) = write_text(&path, text)
-    {
-        // Another shard may have been first.
-        read_text(&path).map_err(|_| error)?;
+    if !path.exists() {
+        // Other shards may do so at the same time.
+        write_same_text(&path, text)?;
     }
     if read_text(&path)? == text {
         return Ok(());

@@ -11,7 +11,7 @@ use super::canvas::{
 };
 use super::values::check;
 
-/// A value with its 95 % interval; `None` where there is no draw to compute it from.
+/// A value with its 95 % interval; `None` where there is none.
 pub type Cell = Option<(f64, Option<(f64, f64)>)>;
 
 /// A line of the picture.
@@ -181,7 +181,7 @@ fn render_cell(
     colour: RGBColor,
 ) -> Rendered {
     let Some((value, interval)) = cell else {
-        return canvas.text("no sample", (centre, y), Anchor::Middle, SMALL, GREY);
+        return canvas.text("no value", (centre, y), Anchor::Middle, SMALL, GREY);
     };
     let x = |value: f64| panel.at(value, 0.0).0;
     if let Some((low, high)) = interval {
