@@ -178,7 +178,7 @@ impl Compare {
 ///
 /// Reads a design (reproduce/multiverse.toml explains one) and writes into DIR: specifications/NUMBER/ (settings and claims of
 /// each reading), multiverse.md (a page for people), multiverse.csv (a row for each specification and claim),
-/// specifications.csv (what each one is), shares.csv, variance.csv, figures/*.svg and design.toml. A run that was stopped
+/// specifications.csv (what each one is), shares.csv, variance.csv, joint.csv, figures/*.svg and design.toml. A run that was stopped
 /// continues. On several machines: run each shard into one folder, then gather.
 #[derive(Args)]
 pub struct Multiverse {

@@ -85,7 +85,7 @@ impl<'a> Configurations<'a> {
                 }
             }
         }
-        Self { out, checkpoints: Checkpoints::new(out, &"study"), tasks, of, count: all.len() }
+        Self { out, checkpoints: checkpoints(out), tasks, of, count: all.len() }
     }
 
     /// Length of the progress bar for them.
@@ -112,14 +112,6 @@ impl<'a> Configurations<'a> {
         Ok(outcomes)
     }
 
-    /// Removes all checkpoints in the folder, of any configuration.
-    ///
-    /// # Errors
-    /// If they cannot be removed.
-    pub fn clear(&self) -> Result<(), FileError> {
-        self.checkpoints.clear()
-    }
-
     /// Removes their checkpoints, once what they gave is kept elsewhere.
     ///
     /// # Errors
@@ -127,6 +119,19 @@ impl<'a> Configurations<'a> {
     pub fn forget(&self) -> Result<(), FileError> {
         self.tasks.iter().try_for_each(|task| self.checkpoints.forget(&task.name))
     }
+}
+
+/// Those of all configurations that were run in a folder.
+fn checkpoints(out: &Path) -> Checkpoints {
+    Checkpoints::new(out, &"study")
+}
+
+/// Removes the checkpoints of all configurations in a folder.
+///
+/// # Errors
+/// If they cannot be removed.
+pub fn clear_checkpoints(out: &Path) -> Result<(), FileError> {
+    checkpoints(out).clear()
 }
 
 /// Runs all configurations, with a progress bar of this name, and keeps their checkpoints.

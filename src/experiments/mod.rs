@@ -7,6 +7,7 @@ pub mod compare;
 mod compared;
 mod configurations;
 pub mod design;
+mod draws;
 mod error;
 pub mod multiverse;
 pub mod progress;

@@ -45,20 +45,20 @@ impl Page<'_> {
             let claim = self.claim(compared);
             numbers::range(claim.accept, claim.measure.unit())
         });
-        let accepted = row(std::iter::once("accepted".to_owned()).chain(accepted));
-        let values = self.table(&|row, unit| {
+        lines.extend(self.header());
+        lines.push(row(std::iter::once("accepted".to_owned()).chain(accepted)));
+        lines.extend(self.rows(&|row, unit| {
             let value = with_interval(row.value, row.cells.low.zip(row.cells.high), unit);
             if row.verdict == Verdict::Reproduced { format!("**{value}**") } else { value }
-        });
-        let (header, values) = values.split_at(2);
-        lines.extend(header.iter().cloned().chain(std::iter::once(accepted)).chain(values.iter().cloned()));
+        }));
         lines.push(format!("\n## Changes from “{}”\n", configurations[0].name));
         lines.push(
             "Bold: the interval excludes 0. Of a claim over several conditions, the one counts that decides the first \
              configuration's value, among those at which both have one. Simulations are drawn in pairs.\n"
                 .to_owned(),
         );
-        lines.extend(self.table(&|row, unit| {
+        lines.extend(self.header());
+        lines.extend(self.rows(&|row, unit| {
             let ends = row.change_low.zip(row.change_high);
             let change = with_interval(row.change, ends, unit);
             if ends.is_some_and(|(low, high)| low > 0.0 || high < 0.0) {
@@ -85,19 +85,21 @@ impl Page<'_> {
         words.join(", ")
     }
 
-    /// A row for each configuration, a column for each claim.
-    fn table(&self, cell: &dyn Fn(&Row, Option<Unit>) -> String) -> Vec<String> {
-        let claims = &self.design.claims;
-        let labels = claims.iter().map(|claim| claim.label.replace('\n', " "));
-        let mut lines = vec![row(std::iter::once(String::new()).chain(labels)), rule(claims.len() + 1)];
-        for configuration in &self.design.configurations {
-            let cells = claims.iter().map(|compared| {
+    /// The head of a table with a column for each claim.
+    fn header(&self) -> [String; 2] {
+        let labels = self.design.claims.iter().map(|claim| claim.label.replace('\n', " "));
+        [row(std::iter::once(String::new()).chain(labels)), rule(self.design.claims.len() + 1)]
+    }
+
+    /// A row for each configuration.
+    fn rows(&self, cell: &dyn Fn(&Row, Option<Unit>) -> String) -> impl Iterator<Item = String> {
+        self.design.configurations.iter().map(move |configuration| {
+            let cells = self.design.claims.iter().map(|compared| {
                 let unit = self.claim(compared).measure.unit();
                 self.row(configuration, compared).map_or("–".to_owned(), |row| cell(row, unit))
             });
-            lines.push(row(std::iter::once(configuration.name.clone()).chain(cells)));
-        }
-        lines
+            row(std::iter::once(configuration.name.clone()).chain(cells))
+        })
     }
 
     fn claim(&self, compared: &Compared) -> &Claim {

@@ -8,6 +8,7 @@ use toml::{Table, Value};
 
 use super::super::compared::Compared;
 use super::super::design::merge;
+use super::super::draws::{Decides, Draws};
 use super::super::error::ExperimentError;
 use crate::analysis::published::claims;
 use crate::settings::Settings;
@@ -47,30 +48,6 @@ pub struct Design {
     /// The open settings.
     #[serde(rename = "factor")]
     pub factors: Vec<Factor>,
-}
-
-/// How many specifications are drawn, nested so that many share a movement, and of these some the distances.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Draws {
-    /// Draws of the factors that decide the movement.
-    pub movements: usize,
-    /// For each movement, draws of the factors that decide the distances.
-    pub distances: usize,
-    /// For each matrix of distances, draws of all other factors: one specification each.
-    pub inferences: usize,
-}
-
-/// What a factor decides, and all that comes after it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Decides {
-    /// How the body moves.
-    Movement,
-    /// What it feels, and the distances between its sensors.
-    Distances,
-    /// The body map and what is inferred from it.
-    Inference,
 }
 
 /// An open setting, or several that belong together, and its reasonable values.

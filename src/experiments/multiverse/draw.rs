@@ -7,7 +7,8 @@ use std::collections::HashSet;
 
 use sobol_burley::sample;
 
-use super::design::{Decides, Design, Draws, Factor};
+use super::super::draws::{Decides, Draws};
+use super::design::{Design, Factor};
 
 /// A reading of the paper: an option of each factor.
 #[derive(Debug, Clone, PartialEq, Eq)]

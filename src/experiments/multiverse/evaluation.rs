@@ -3,7 +3,8 @@
 
 use serde::Serialize;
 
-use super::design::{Decides, Design, Factor};
+use super::super::draws::Decides;
+use super::design::{Design, Factor};
 use super::specification::Specification;
 use crate::analysis::claims::Verdict;
 use crate::analysis::published::{Claim, HEADLINE, claims};
@@ -147,10 +148,6 @@ impl<'a> Evaluation<'a> {
         for (at, compared) in self.design.claims.iter().enumerate() {
             let with: Vec<&Specification> =
                 self.all.iter().filter(|one| one.rows[at].value.is_some()).collect();
-            let level = |factor: &Factor, one: &Specification| {
-                let label = one.label(&factor.name);
-                factor.options.iter().position(|option| option.label == label).unwrap_or_default()
-            };
             let unit = |factor: &&Factor| -> Vec<usize> {
                 let unit = |(place, one): (usize, &&Specification)| match factor.decides {
                     Decides::Movement => one.summary.movement,
@@ -165,7 +162,7 @@ impl<'a> Evaluation<'a> {
                 units: factors.iter().map(unit).collect(),
                 levels: factors
                     .iter()
-                    .map(|factor| with.iter().map(|one| level(factor, one)).collect())
+                    .map(|factor| with.iter().map(|one| option_of(factor, one)).collect())
                     .collect(),
             };
             for (source, share) in table.shares() {
@@ -213,13 +210,7 @@ impl<'a> Evaluation<'a> {
         let choices = |factor: &&Factor| Choices {
             factor: factor.name.clone(),
             options: factor.options.iter().map(|option| option.label.clone()).collect(),
-            chosen: with
-                .iter()
-                .map(|one| {
-                    let label = one.label(&factor.name);
-                    factor.options.iter().position(|option| option.label == label).unwrap_or_default()
-                })
-                .collect(),
+            chosen: with.iter().map(|one| option_of(factor, one)).collect(),
         };
         Curve {
             title: self.design.claims[at].label.replace('\n', " "),
@@ -230,6 +221,12 @@ impl<'a> Evaluation<'a> {
             choices: self.varied().iter().map(choices).collect(),
         }
     }
+}
+
+/// The option of a factor that a specification has, by its place.
+fn option_of(factor: &Factor, one: &Specification) -> usize {
+    let label = one.label(&factor.name);
+    factor.options.iter().position(|option| option.label == label).unwrap_or_default()
 }
 
 /// Whether a claim holds in a specification; `None` without a value.

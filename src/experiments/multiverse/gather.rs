@@ -5,17 +5,17 @@ use std::path::Path;
 use serde::Serialize;
 use serde_json::{Map, Value};
 
-use super::super::configurations::Configurations;
+use super::super::configurations::clear_checkpoints;
 use super::super::error::ExperimentError;
 use super::design::{COLUMNS, Design};
 use super::draw::specifications;
 use super::evaluation::Evaluation;
 use super::page::page;
 use super::specification::{self, Row, Specification};
-use super::work::COPY;
+use super::work::{COPY, check_design};
 use crate::files::manifest::Manifest;
 use crate::files::result_folder::ResultFolder;
-use crate::files::{FileError, read_text, remove_partial};
+use crate::files::{FileError, remove_partial};
 use crate::report::plot::specifications as curve;
 
 /// A row of multiverse.csv.
@@ -34,15 +34,11 @@ struct NumberedRow<'a> {
 /// # Errors
 /// If `out` holds another design or lacks a specification, or a file cannot be written.
 pub fn gather(design: &Design, text: &str, out: &Path) -> Result<(), ExperimentError> {
-    let path = out.join(COPY);
-    if read_text(&path)? != text {
-        let message = "is another design, whose results are in this folder; gather with that design";
-        return Err(FileError::new(&path, message).into());
-    }
+    check_design(text, out)?;
     let all = read_all(design, out)?;
     // What shards that were killed left: nobody is at work any more.
     remove_partial(&out.join("specifications"))?;
-    Configurations::new(&[], out).clear()?;
+    clear_checkpoints(out)?;
     let mut folder = ResultFolder::new(out);
     folder.remember([COPY.to_owned()]);
     folder.write_rows("specifications.csv", all.iter().map(|one| row_of(design, one)))?;

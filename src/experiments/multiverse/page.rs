@@ -1,7 +1,8 @@
 //! Describe a multiverse for people: first the answer, then the evidence.
 
 use super::super::design::flat;
-use super::design::{Design, Draws, Factor};
+use super::super::draws::Draws;
+use super::design::{Design, Factor};
 use super::evaluation::{Evaluation, ShareRow, TOGETHER, VarianceRow};
 use crate::analysis::published::{HEADLINE, Unit};
 use crate::report::markdown::{row, rule};

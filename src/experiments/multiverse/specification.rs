@@ -103,9 +103,15 @@ pub fn write(
     settings: &Settings,
     outcome: &Outcome,
 ) -> Result<(), ExperimentError> {
+    let [of_first, of_second] =
+        [Experiment::Exp1, Experiment::Exp2].map(|experiment| outcome.evidence(experiment, settings));
     let row = |compared: &Compared| {
+        let evidence = match compared.experiment {
+            Experiment::Exp1 => &of_first,
+            Experiment::Exp2 => &of_second,
+        };
         let claim = compared.find(claims).expect("the design was checked");
-        let (found, place, verdict) = judge_claim(claim, &outcome.evidence(compared.experiment, settings));
+        let (found, place, verdict) = judge_claim(claim, evidence);
         Row {
             claim: compared.id.clone(),
             experiment: compared.experiment,

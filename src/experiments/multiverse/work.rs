@@ -73,7 +73,7 @@ pub fn work(design: &Design, text: &str, shard: Shard, out: &Path) -> Result<(),
     };
     let bar = progress(configurations(&movements).length(), format!("{} specifications", left.len()));
     let (claims, begun, mut finished) = (claims(), Instant::now(), 0);
-    for together in movements.chunks(at_once(design)) {
+    for together in movements.chunks(left.first().map_or(1, |(_, settings)| at_once(settings))) {
         let configurations = configurations(together);
         let outcomes = configurations.run(&bar)?;
         for ((drawn, settings), outcome) in together.iter().flatten().zip(&outcomes) {
@@ -125,12 +125,10 @@ pub fn settings(design: &Design, drawn: &Drawn) -> Result<Settings, ExperimentEr
     design.settings(&drawn.options, design.seed + drawn.movement as u64, &drawn.number.to_string())
 }
 
-/// Movements of the design whose specifications are run together, so that every thread has one of its simulations.
-fn at_once(design: &Design) -> usize {
-    let simulations = Settings::overlaid([&design.settings], "the design's settings").map_or(1, |settings| {
-        settings.experiment.simulations * (settings.experiment.coordinations.len() + 1)
-    });
-    rayon::current_num_threads().div_ceil(simulations)
+/// Movements whose specifications are run together, so that every thread has one of their simulations.
+fn at_once(settings: &Settings) -> usize {
+    let experiment = &settings.experiment;
+    rayon::current_num_threads().div_ceil(experiment.simulations * (experiment.coordinations.len() + 1))
 }
 
 /// Keeps the design beside the results, if it is not there.
@@ -143,6 +141,15 @@ fn keep_design(text: &str, out: &Path) -> Result<(), ExperimentError> {
         // Other shards may do so at the same time.
         write_same_text(&path, text)?;
     }
+    check_design(text, out)
+}
+
+/// Whether the results in a folder are of this design.
+///
+/// # Errors
+/// If they are not.
+pub fn check_design(text: &str, out: &Path) -> Result<(), ExperimentError> {
+    let path = out.join(COPY);
     if read_text(&path)? == text {
         return Ok(());
     }

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use toml::Table;
 
 use super::super::design::{flat, merge};
+use super::super::draws::{Decides, Draws};
 use super::super::error::ExperimentError;
 use crate::analysis::published::{Claim, Experiment, claims};
 use crate::numerics::rng::stream;
@@ -29,30 +30,6 @@ pub struct Design {
     pub start: Vec<Candidate>,
     /// What is drawn at random: one option of each.
     pub factor: Vec<Factor>,
-}
-
-/// How many candidates are drawn, so that those that share a movement are simulated once.
-#[derive(Debug, Clone, Copy, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Draws {
-    /// Draws of the factors that decide the movement.
-    pub movements: usize,
-    /// For each movement, draws of the factors that decide the distances.
-    pub distances: usize,
-    /// For each matrix of distances, draws of all other factors: one candidate each.
-    pub inferences: usize,
-}
-
-/// What a factor decides, and all that comes after it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Decides {
-    /// How the body moves.
-    Movement,
-    /// What it feels, and the distances between its sensors.
-    Distances,
-    /// The body map and what is inferred from it.
-    Inference,
 }
 
 /// A claim that counts.

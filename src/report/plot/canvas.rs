@@ -22,6 +22,8 @@ const FINE: f64 = 4.0;
 pub const INK: RGBColor = RGBColor(0, 0, 0);
 /// Axes, lines of reference and what is far away.
 pub const GREY: RGBColor = RGBColor(110, 110, 110);
+/// An accepted range: pale green, so that lines and markers stand out.
+pub const BAND: RGBColor = RGBColor(217, 240, 226);
 /// Lines that only guide the eye.
 pub const PALE: RGBColor = RGBColor(222, 222, 222);
 

@@ -6,8 +6,8 @@ use plotters::style::{RGBColor, WHITE};
 
 use super::axes::{Axis, Panel, Rect, X_BARE, around};
 use super::canvas::{
-    Anchor, BLUE, Canvas, FONT, GREY, INK, MarkerStyle, Place, PlotError, Rendered, SMALL, Shape, VERMILLION,
-    WIDTH, render_svg, stroke, text_width,
+    Anchor, BAND, BLUE, Canvas, FONT, GREY, INK, MarkerStyle, Place, PlotError, Rendered, SMALL, Shape,
+    VERMILLION, WIDTH, render_svg, stroke, text_width,
 };
 use super::values::check;
 
@@ -36,8 +36,6 @@ pub struct Column {
     pub accepted: Option<(f64, f64)>,
 }
 
-/// The accepted range: pale green, so that lines and markers stand out.
-const BAND: RGBColor = RGBColor(217, 240, 226);
 const LINE: f64 = 19.0;
 const LABELS: f64 = 176.0;
 const GAP: f64 = 12.0;

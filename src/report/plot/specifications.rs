@@ -5,7 +5,7 @@ use plotters::style::RGBColor;
 
 use super::axes::{Axis, Panel, Rect, X_BARE, around, percent, plain};
 use super::canvas::{
-    Anchor, BLUE, Canvas, FONT, GREY, INK, PALE, PlotError, Rendered, SMALL, WIDTH, render_svg, stroke,
+    Anchor, BAND, BLUE, Canvas, FONT, GREY, INK, PALE, PlotError, Rendered, SMALL, WIDTH, render_svg, stroke,
 };
 use super::values::check;
 use crate::analysis::published::Unit;
@@ -47,8 +47,6 @@ pub struct Curve {
     pub choices: Vec<Choices>,
 }
 
-/// Accepted range: pale green.
-const BAND: RGBColor = RGBColor(217, 240, 226);
 /// Where the panels begin: room for the labels of options.
 const LEFT: f64 = 176.0;
 /// Height of the curve's panel.

@@ -1,0 +1,27 @@
+//! Say how configurations are drawn: nested, so that many share a movement, and of these some the distances.
+
+use serde::Deserialize;
+
+/// How many are drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Draws {
+    /// Draws of the factors that decide the movement.
+    pub movements: usize,
+    /// For each movement, draws of the factors that decide the distances.
+    pub distances: usize,
+    /// For each matrix of distances, draws of all other factors: one configuration each.
+    pub inferences: usize,
+}
+
+/// What a factor decides, and all that comes after it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Decides {
+    /// How the body moves.
+    Movement,
+    /// What it feels, and the distances between its sensors.
+    Distances,
+    /// The body map and what is inferred from it.
+    Inference,
+}
