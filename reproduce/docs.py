@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 """Put the results of finished runs into the repository: reproduce/docs.py [RESULTS]
 
-RESULTS is the folder that holds exp1, exp2, search and sensitivity (default: results/). It updates
+RESULTS is the folder that holds exp1, exp2, search, sensitivity, ablation, step and multiverse (default:
+results/). It updates
 
 - README.md: the table between <!-- claims --> and <!-- /claims -->, from claims.csv of both experiments;
 - docs/results.md: the tables of both experiments, from their claims.md;
-- docs/shown/: two figures, and the tables and pictures of search and sensitivity;
-- docs/sensitivity.md: the page of the sensitivity study;
+- docs/shown/: two figures, and the tables and pictures of the studies;
+- docs/sensitivity.md, ablation.md, step.md and multiverse.md: the pages of the studies;
 - DEVIATIONS.md: the table of open settings, from paper.toml, sensitivity.toml and the search that is
   shown. It needs no run.
 
@@ -40,7 +41,7 @@ UNITS = ["kg/m^3", "N m s/rad", "N m/rad", "m", "s"]
 
 def main():
     results = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "results"
-    for step in [claims, experiment_1, experiment_2, search, sensitivity]:
+    for step in [claims, experiment_1, experiment_2, search, sensitivity, ablation, half_step, multiverse]:
         try:
             step(results)
         except FileNotFoundError as missing:
@@ -161,25 +162,42 @@ def search(results):
     # The last round leaves no candidates, and one without a resolved candidate no winner.
     optional = ["next.toml", "best.toml"]
     there = [name for name in optional if (results / "search" / name).exists()]
-    copy([results / "search" / name for name in ["search.md", "scores.csv", "credits.csv", *there]], SHOWN / "finalists")
+    copy([results / "search" / name for name in ["search.md", "scores.csv", "credits.csv", *there]], SHOWN / "twenty")
     for name in set(optional) - set(there):
-        (SHOWN / "finalists" / name).unlink(missing_ok=True)
+        (SHOWN / "twenty" / name).unlink(missing_ok=True)
 
 
 def sensitivity(results):
-    folder = results / "sensitivity"
-    page = (folder / "sensitivity.md").read_text()
-    copy([folder / "sensitivity.csv", *sorted((folder / "figures").glob("*.svg"))], SHOWN / "sensitivity")
-    # The page moves into docs/, so that links to its own files and to those of the repository change.
+    study(results / "sensitivity", "sensitivity.md", ["sensitivity.csv"])
+
+
+def ablation(results):
+    study(results / "ablation", "comparison.md", ["comparison.csv"])
+
+
+def half_step(results):
+    study(results / "step", "comparison.md", ["comparison.csv"])
+
+
+def multiverse(results):
+    tables = ["multiverse.csv", "specifications.csv", "shares.csv", "variance.csv", "joint.csv"]
+    study(results / "multiverse", "multiverse.md", tables)
+
+
+def study(folder, page, tables):
+    """Put the page of a study into docs/, and its tables and pictures into docs/shown/."""
+    name, text = folder.name, (folder / page).read_text()
+    copy([*(folder / table for table in tables), *sorted((folder / "figures").glob("*.svg"))], SHOWN / name)
+    # The page moves, so that links to its own files and to those of the repository change.
     for old, new in [
-        ("](figures/", "](shown/sensitivity/"),
-        ("](sensitivity.csv)", "](shown/sensitivity/sensitivity.csv)"),
+        ("](figures/", f"](shown/{name}/"),
+        *((f"]({table})", f"](shown/{name}/{table})") for table in tables),
         ("](reproduce/shown/", "](shown/"),
         ("](docs/", "]("),
         ("](reproduce/", "](../reproduce/"),
     ]:
-        page = page.replace(old, new)
-    (ROOT / "docs" / "sensitivity.md").write_text(page)
+        text = text.replace(old, new)
+    (ROOT / "docs" / f"{name}.md").write_text(text)
 
 
 # ---- The open settings
@@ -190,8 +208,8 @@ def deviations():
     settings = read_settings()
     folder = ROOT / "reproduce"
     study = tomllib.loads((folder / "sensitivity.toml").read_text())
-    # What the first search, whose winner is the default, has varied.
-    with open(SHOWN / "first" / "scores.csv", newline="") as file:
+    # What the search has varied.
+    with open(SHOWN / "screen" / "scores.csv", newline="") as file:
         searched = {key for row in csv.DictReader(file) for key in re.findall(r"([\w.]+) = ", row["settings"])}
     lines = ["| setting | the paper says | ours | reason | source |", "|---|---|---|---|---|"]
     named = set()

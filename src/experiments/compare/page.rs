@@ -28,7 +28,7 @@ impl Page<'_> {
         lines.push(format!(
             "Seed {seed}, revision {revision}; all configurations on the same simulations: {}. Intervals are 95 % intervals \
              over simulations (bootstrap). Of a claim over several conditions, the value is that which lies farthest \
-             towards the outside of the accepted range. All numbers: comparison.csv.\n",
+             towards the outside of the accepted range. All numbers: [comparison.csv](comparison.csv).\n",
             flat(settings).join(", ")
         ));
         for (name, claims) in self.pictures() {
