@@ -90,7 +90,7 @@ impl Batch<'_> {
         std::thread::scope(|scope| {
             let mut all = Vec::with_capacity(tasks.len());
             let mut shared = Shared::default();
-            let mut ahead = Ahead { scope, tasks, progress: &progress, next: None };
+            let mut ahead = Ahead::new(scope, tasks, &progress);
             for (at, (task, progress)) in tasks.iter().zip(&progress).enumerate() {
                 self.bar.set_message(task.name.clone());
                 // A failure is not kept among the checkpoints: what failed may succeed on a machine or with a library
