@@ -38,7 +38,7 @@ gains = { frequency = 1.0, spin_damping = 0.1 }
 [[factor.option]]
 label = "wild"
 why = "it is not"
-settings = { motion = { stiffness = 1e5, damping = 1e5 } }
+settings = { motion = { controller = "torque", stiffness = 1e5, damping = 1e5 } }
 [[factor]]
 name = "levels"
 decides = "distances"

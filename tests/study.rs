@@ -5,11 +5,14 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
-/// Bodies of few sensors, for a second or two.
+/// Bodies of few sensors, for a second or two, and what else the designs below rest on.
 const SMALL: &str = "
+agent = { part_length = 0.3, part_radius = 0.05, gap = 0.0 }
 skin = { around = 8, along = 3 }
 physics = { duration = 1000.0 }
-schema = { chains = 4, sweeps = 60 }
+quantise = { scheme = \"pooled\" }
+map = { of = \"distances\" }
+schema = { sampler = \"equations\", prior = \"fraley-raftery\", start = \"uniform\", chains = 4, sweeps = 60 }
 experiment = { simulations = 2, dimensions = [2, 4], coordinations = [0.5], dimension = 4 }
 baselines = { clusters = [5] }
 ";
@@ -30,9 +33,9 @@ values = [{{ quantise = {{ levels = 3 }} }}]
 name = \"gains\"
 title = \"Gains\"
 paper = \"Linear (5.1)\"
-settings = [\"motion.stiffness\"]
+settings = [\"motion.stiffness\", \"motion.controller\"]
 why = \"Chosen\"
-values = [{{ motion = {{ stiffness = 0.2 }} }}, {{ motion = {{ stiffness = 1e5, damping = 1e5 }} }}]
+values = [{{ motion = {{ controller = \"torque\", stiffness = 0.2 }} }}, {{ motion = {{ controller = \"torque\", stiffness = 1e5, damping = 1e5 }} }}]
 "
     )
 }
@@ -61,10 +64,14 @@ slack = 0.5
 {}{}
 [[start]]
 name = \"gentle\"
-settings = {{ quantise = {{ levels = 3 }}, motion = {{ stiffness = 0.07, damping = 0.03 }} }}
+settings = {{ quantise = {{ levels = 3 }}, motion = {{ controller = \"torque\", stiffness = 0.07, damping = 0.03 }} }}
 [[start]]
 name = \"unstable\"
-settings = {{ motion = {{ stiffness = 1e5, damping = 1e5 }} }}
+settings = {{ motion = {{ controller = \"torque\", stiffness = 1e5, damping = 1e5 }} }}
+[[factor]]
+name = \"gains\"
+decides = \"movement\"
+options = [{{ motion = {{ controller = \"torque\", stiffness = 1.1, damping = 0.5 }} }}]
 [[factor]]
 name = \"edges\"
 decides = \"inference\"
@@ -92,7 +99,7 @@ experiment = \"exp2\"
 label = \"best p\"
 [[configuration]]
 name = \"gentle\"
-settings = {{ motion = {{ stiffness = 0.07, damping = 0.03 }} }}
+settings = {{ motion = {{ controller = \"torque\", stiffness = 0.07, damping = 0.03 }} }}
 [[configuration]]
 name = \"three\"
 settings = {{ quantise = {{ levels = 3 }} }}
@@ -101,7 +108,7 @@ name = \"the same\"
 settings = {{}}
 [[configuration]]
 name = \"unstable\"
-settings = {{ motion = {{ stiffness = 1e5, damping = 1e5 }} }}
+settings = {{ motion = {{ controller = \"torque\", stiffness = 1e5, damping = 1e5 }} }}
 "
     )
 }
@@ -227,7 +234,7 @@ fn a_search_keeps_the_best_and_shows_which_claims_hold_together() {
     };
     assert_eq!(second(&files(&at("three"))), second(&one));
     let best = fs::read_to_string(at("one/best.toml")).unwrap();
-    // The others turn too far in a step, as the default does.
+    // The others turn too far in a step.
     assert!(best.contains("levels = 3") && row("2,1,").contains("gentle"), "{best}");
     fs::write(at("short.toml"), format!("{best}\n[physics]\nduration = 10.0\n")).unwrap();
     succeed(folder.path(), "simulate --settings short.toml --out body");
