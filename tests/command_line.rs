@@ -197,7 +197,10 @@ fn separated_clusters(folder: &Path) -> PathBuf {
 fn foreign_data_is_clustered_and_every_draw_can_be_kept() {
     let folder = tempfile::tempdir().unwrap();
     separated_clusters(folder.path());
-    let shared = "--chains 20 --sweeps 400 --labels labels.csv --tree tree.csv";
+    let shared = format!(
+        "--settings {}/reproduce/equations.toml --chains 20 --sweeps 400 --labels labels.csv --tree tree.csv",
+        env!("CARGO_MANIFEST_DIR")
+    );
     for model in ["dpgmm", "dpgmm-lj"] {
         succeed(folder.path(), &format!("infer clusters.npy --model {model} {shared} --out {model}"));
         let rows = rows(&folder.path().join(model).join("samples.csv"));
@@ -215,7 +218,7 @@ fn foreign_data_is_clustered_and_every_draw_can_be_kept() {
         succeed(folder.path(), &format!("infer clusters.npy --start {start} {shared} --out start-{start}"));
     }
     let draws = |out: &str| fs::read(folder.path().join(out).join("assignments.npy")).unwrap();
-    assert_eq!(draws("start-uniform"), draws("dpgmm-lj"), "the default");
+    assert_eq!(draws("start-uniform"), draws("dpgmm-lj"), "that of equations.toml");
     assert_ne!(draws("start-k-means"), draws("dpgmm-lj"));
     assert_ne!(draws("start-single"), draws("dpgmm-lj"));
 
@@ -224,6 +227,68 @@ fn foreign_data_is_clustered_and_every_draw_can_be_kept() {
     assert_eq!(header(&folder.path().join("all/samples.csv")), "chain,sweep,parts,log_posterior");
     let draws: Vec<_> = all.iter().map(|row| (row["chain"].as_str(), row["sweep"].as_str())).collect();
     assert_eq!((draws.len(), draws[0], draws[15]), (16, ("0", "5"), ("1", "12")));
+}
+
+/// Five parts of 40 points, each along an axis of its own, and joined at their ends.
+fn staircase(folder: &Path) {
+    let wave = |at: usize| (at as f64 * 12.9898).sin() * 0.3;
+    let coordinate = |i: usize, axis: usize| {
+        let along = match axis.cmp(&(i / 40)) {
+            std::cmp::Ordering::Less => 10.0,
+            std::cmp::Ordering::Equal => 10.0 * ((i % 40) as f64 + 0.5) / 40.0,
+            std::cmp::Ordering::Greater => 0.0,
+        };
+        along + wave(i * (3 + 2 * axis) + axis)
+    };
+    let coordinates = (0..200).flat_map(|i| (0..5).map(move |axis| coordinate(i, axis))).collect();
+    npy::write_body_map(&folder.join("stairs.npy"), &BodyMap { dims: 5, coordinates }).unwrap();
+    let labels: String = (0..200).map(|i| format!("{i},{}\n", i / 40)).collect();
+    fs::write(folder.join("labels.csv"), format!("sensor,part\n{labels}")).unwrap();
+    fs::write(folder.join("tree.csv"), "child,parent\n1,0\n2,1\n3,2\n4,3\n").unwrap();
+    fs::write(folder.join("one.toml"), "[schema]\nscale = 1.0\n").unwrap();
+}
+
+#[test]
+fn the_split_merge_sampler_gives_a_posterior_of_parts_and_edges() {
+    let folder = tempfile::tempdir().unwrap();
+    staircase(folder.path());
+    let at = |name: &str| folder.path().join("out").join(name);
+    let command = "infer stairs.npy --sampler split-merge --settings one.toml --labels labels.csv --tree tree.csv \
+                   --out out";
+    let told = succeed(folder.path(), command);
+    assert!(told.contains("number of parts: 5 (100.0 %)") && told.contains("tree right"), "{told}");
+    assert!(told.contains("└─ "), "a drawing of the tree: {told}");
+    assert_eq!(header(&at("posterior.csv")), "parts,probability");
+    let total: f64 =
+        rows(&at("posterior.csv")).iter().map(|row| row["probability"].parse::<f64>().unwrap()).sum();
+    assert!((total - 1.0).abs() < 1e-12);
+    assert_eq!(header(&at("parts.csv")), "sensor,part,probability");
+    let parts = rows(&at("parts.csv"));
+    assert_eq!(parts.len(), 200);
+    assert_eq!(
+        (parts[0]["part"].as_str(), parts[199]["part"].as_str()),
+        ("0", "4"),
+        "named by their first sensors"
+    );
+    assert_eq!(header(&at("edges.csv")), "part,other,probability,in_tree");
+    let edges = rows(&at("edges.csv"));
+    assert_eq!(edges.len(), 5 * 4 / 2);
+    let expected: f64 = edges.iter().map(|row| row["probability"].parse::<f64>().unwrap()).sum();
+    assert!((expected - 4.0).abs() < 1e-9, "every tree has four edges");
+    let tree: Vec<_> = edges.iter().filter(|row| row["in_tree"] == "true").collect();
+    assert_eq!(tree.len(), 4);
+    assert_eq!(header(&at("diagnostics.csv")), "quantity,r_hat,ess");
+    // The same settings and seed give the same bytes; another sampler has no posterior.
+    succeed(folder.path(), &command.replace("out out", "out again"));
+    for file in ["posterior.csv", "parts.csv", "edges.csv", "diagnostics.csv", "samples.csv", "trees.csv"] {
+        let again = folder.path().join("again").join(file);
+        assert_eq!(fs::read(at(file)).unwrap(), fs::read(again).unwrap(), "{file}");
+    }
+    succeed(
+        folder.path(),
+        &command.replace("split-merge", "equations --chains 2").replace("out out", "out other"),
+    );
+    assert!(!folder.path().join("other/posterior.csv").exists());
 }
 
 #[test]
@@ -264,6 +329,7 @@ fn a_mistake_is_one_line_that_says_what_and_where_and_status_2() {
     )
     .unwrap();
     npy::write_body_map(&at("wide.npy"), &BodyMap { dims: 3, coordinates: vec![1.0; 6] }).unwrap();
+    fs::write(at("fraley.toml"), "schema = { prior = \"fraley-raftery\" }").unwrap();
     npy::write_body_map(&at("flat.npy"), &BodyMap { dims: 2, coordinates: vec![1., 5., 2., 5., 4., 5.] })
         .unwrap();
     let wide = bodyschema::stages::sense::Tactile { samples: 1, pressures: vec![1.0; 20_001] };
@@ -279,8 +345,11 @@ fn a_mistake_is_one_line_that_says_what_and_where_and_status_2() {
     fs::write(at("zero.toml"), "[schema]\ncomponents = 0").unwrap();
     fs::write(at("method.toml"), "[map]\nmethod = \"sammon\"").unwrap();
     fs::write(at("start.toml"), "[schema]\nstart = \"random\"").unwrap();
-    fs::write(at("wild.toml"), "[motion]\ncoordination = 0.0\nstiffness = 1e6\n[physics]\nduration = 60.0")
-        .unwrap();
+    fs::write(
+        at("wild.toml"),
+        "[motion]\ncoordination = 0.0\ncontroller = \"torque\"\nstiffness = 1e6\n[physics]\nduration = 60.0",
+    )
+    .unwrap();
     fs::write(at("heavy.toml"), "[agent]\ndensity = 1e300").unwrap();
     fs::write(at("long.toml"), "[physics]\nduration = 1e7").unwrap();
     fs::write(at("deep.toml"), "[experiment]\ndimensions = [2, 900]").unwrap();
@@ -327,14 +396,17 @@ fn a_mistake_is_one_line_that_says_what_and_where_and_status_2() {
         ("distance nan.npy --symbols --out d.npy", "row 1, column 0: NaN"),
         ("distance line.npy --levels 1 --out d.npy", "`quantise.levels` is 1, but must be 2 to 256"),
         ("map wide.npy --dims 2 --out m.npy", "square matrix, but the shape is 2 x 3"),
-        ("map line.npy --dims 4 --out m.npy", "at most 1"),
-        ("map line.npy --dims 4 --method smacof --out m.npy", "at most 1"),
+        ("map line.npy --of distances --dims 4 --out m.npy", "at most 1"),
+        ("map line.npy --of distances --dims 4 --method smacof --out m.npy", "at most 1"),
         ("map same.npy --dims 1 --method nonmetric --out m.npy", "all at distance 0"),
-        ("map far.npy --dims 1 --method smacof --out m.npy", "the largest distance is 1e200"),
+        ("map far.npy --of distances --dims 1 --method smacof --out m.npy", "the largest distance is 1e200"),
         ("map line.npy --dims 1 --settings method.toml --out m.npy", "unknown variant `sammon`"),
         ("map line.npy --dims 0 --out m.npy", "--dims is 0"),
         ("map line.npy --dims 1 --out file/m.npy", "file/m.npy: cannot be written"),
-        ("infer flat.npy --out s", "flat.npy: the 3 points span fewer than 2 dimensions"),
+        (
+            "infer flat.npy --settings fraley.toml --out s",
+            "flat.npy: the 3 points span fewer than 2 dimensions",
+        ),
         ("infer nan.npy --out s", "row 1, column 0: NaN"),
         ("infer clusters.npy --components 0 --out s", "`schema.components` is 0, but must be 1 to 1000"),
         ("infer clusters.npy --settings zero.toml --out s", "`schema.components` is 0"),
@@ -365,8 +437,8 @@ fn a_mistake_is_one_line_that_says_what_and_where_and_status_2() {
         ("simulate --settings /dev/zero --out s", "/dev/zero: cannot read the settings"),
         ("simulate --settings . --out s", ".: cannot read the settings"),
         ("distance . --out d.npy", ".: cannot be read as a .npy file"),
-        ("map line.npy --dims 18446744073709551615 --out m.npy", "at most 1"),
-        ("map far.npy --dims 1 --out m.npy", "the largest distance is 1e200"),
+        ("map line.npy --of distances --dims 18446744073709551615 --out m.npy", "at most 1"),
+        ("map far.npy --of distances --dims 1 --out m.npy", "the largest distance is 1e200"),
         ("infer broad.npy --out s", "the 2 points span fewer than 200000 dimensions"),
         ("infer deep.npy --components 1000 --out s", "schema.components = 1000 in 200 dimensions"),
         (

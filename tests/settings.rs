@@ -40,11 +40,11 @@ use Range::{Flag, Numbers, Probabilities, Real, Whole, Word};
 const SETTINGS: [(&str, Range); 58] = [
     ("agent.morphology", Word(&["chain", "star", "tee", "y"])),
     ("agent.part_length", Real(1e-3, 1e3)),
-    ("agent.part_radius", Real(1e-3, 3.0)),
+    ("agent.part_radius", Real(1e-3, 5.0)),
     ("agent.gap", Real(0.0, 1e3)),
     ("agent.density", Real(1e-6, 1e6)),
-    ("skin.around", Whole(1, 285)),
-    ("skin.along", Whole(1, 333)),
+    ("skin.around", Whole(1, 333)),
+    ("skin.along", Whole(1, 285)),
     ("skin.caps", Whole(0, 3832)),
     ("motion.coordination", Real(0.0, 1.0)),
     ("motion.epoch", Whole(1, i64::MAX as u64)),
@@ -67,7 +67,7 @@ const SETTINGS: [(&str, Range); 58] = [
     ("map.starts", Whole(1, 1000)),
     ("map.steps", Whole(1, 100_000)),
     ("map.tolerance", Real(0.0, 1e6)),
-    ("schema.sampler", Word(&["equations", "authors-code"])),
+    ("schema.sampler", Word(&["equations", "authors-code", "split-merge"])),
     ("schema.components", Whole(1, 1000)),
     ("schema.concentration", Real(1e-6, 1e6)),
     ("schema.mean_weight", Real(1e-6, 1e6)),
@@ -75,7 +75,7 @@ const SETTINGS: [(&str, Range); 58] = [
     ("schema.prior", Word(&["fraley-raftery", "identity", "inverse-covariance"])),
     ("schema.scale", Real(1e-6, 1e6)),
     ("schema.edge_weight", Word(&["literal", "pairwise", "collapsed"])),
-    ("schema.start", Word(&["uniform", "k-means", "single", "stick-breaking"])),
+    ("schema.start", Word(&["uniform", "k-means", "single", "stick-breaking", "apart"])),
     ("schema.sweeps", Whole(1, 10_000_000)),
     ("schema.chains", Whole(1, 71_428)),
     ("schema.keep", Word(&["last", "all"])),
@@ -249,9 +249,11 @@ fn mixtures_of_extreme_priors_on_nearly_flat_maps_end_in_samples_or_in_an_error(
         (schema.chains, schema.sweeps, schema.components) = (1, 10, *[2, 10, 300].choose(rng).unwrap());
         schema.edge_weight =
             *[EdgeWeight::Literal, EdgeWeight::Pairwise, EdgeWeight::Collapsed].choose(rng).unwrap();
-        schema.start =
-            *[Start::Uniform, Start::KMeans, Start::Single, Start::StickBreaking].choose(rng).unwrap();
-        schema.sampler = *[Sampler::Equations, Sampler::AuthorsCode].choose(rng).unwrap();
+        schema.start = *[Start::Uniform, Start::KMeans, Start::Single, Start::StickBreaking, Start::Apart]
+            .choose(rng)
+            .unwrap();
+        schema.sampler =
+            *[Sampler::Equations, Sampler::AuthorsCode, Sampler::SplitMerge].choose(rng).unwrap();
         schema.prior =
             *[Prior::FraleyRaftery, Prior::Identity, Prior::InverseCovariance].choose(rng).unwrap();
         schema.concentration = between(1e-6, 1e6, rng);
@@ -373,8 +375,9 @@ fn random_settings_end_in_a_result_or_in_a_line_that_names_a_setting() {
     let counts =
         [End::Refused, End::Unstable, End::NoMap, End::NoMixture, End::Done].map(|end| (end, count(end)));
     println!("{cases} cases: {counts:?}; the slowest took {slowest:?}");
-    // Enough of each to say that it was tried; that rounding leaves a mixture nothing is too rare.
-    for ((end, count), percent) in counts.into_iter().zip([10, 10, 1, 0, 10]) {
+    // Enough of each to say that it was tried; a servo is seldom unstable, and that rounding leaves a mixture nothing is too
+    // rare.
+    for ((end, count), percent) in counts.into_iter().zip([10, 4, 1, 0, 10]) {
         assert!(100 * count >= percent * cases, "{end:?}: {count} of {cases}");
     }
     // A thread that waits for others may look slow.

@@ -3,9 +3,12 @@
 pub mod cells;
 pub mod claims;
 pub mod conditions;
+pub mod consensus;
+pub mod diagnostics;
 pub mod measure;
 pub mod one_body;
 pub mod paired;
+pub mod posterior;
 pub mod published;
 pub mod shares;
 pub mod single_bodies;

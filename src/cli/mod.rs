@@ -3,6 +3,7 @@
 mod experiments;
 mod options;
 mod output;
+mod posterior;
 mod program;
 mod results;
 mod stages;

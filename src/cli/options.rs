@@ -9,7 +9,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use crate::analysis::published::Experiment;
-use crate::settings::Settings;
+use crate::settings::{Base, Settings};
 use crate::stages::body_map::{MapMethod, MapOf};
 use crate::stages::quantise::Scheme;
 use crate::stages::schema::{EdgeWeight, Keep, Model, Sampler, Start};
@@ -60,9 +60,17 @@ pub struct SettingsAndSeed {
 impl SettingsAndSeed {
     /// The settings, of a quick run if `quick`.
     pub fn load(&self, quick: bool) -> Result<Settings> {
-        let mut settings = self.file.load(quick)?;
+        Ok(self.seeded(self.file.load(quick)?))
+    }
+
+    /// The settings, with those of a file of the project beneath the user's.
+    pub fn load_over(&self, base: Base) -> Result<Settings> {
+        Ok(self.seeded(Settings::load_over(Some(base), self.file.settings.as_deref())?))
+    }
+
+    fn seeded(&self, mut settings: Settings) -> Settings {
         set(&mut settings.experiment.seed, self.seed);
-        Ok(settings)
+        settings
     }
 }
 
@@ -135,6 +143,10 @@ impl Choice for Sampler {
     const VALUES: &'static [(Self, &'static str)] = &[
         (Self::Equations, "As the paper's equations say"),
         (Self::AuthorsCode, "As the first author's public code computes; see [schema.authors] of paper.toml"),
+        (
+            Self::SplitMerge,
+            "By split and merge moves, with the settings of split-merge.toml; gives a posterior",
+        ),
     ];
 }
 
@@ -165,6 +177,7 @@ impl Choice for Start {
             Self::StickBreaking,
             "Weights by stick-breaking, labels from them alone, means by k-means, identity covariances",
         ),
+        (Self::Apart, "One chain after the other: single, k-means, uniform"),
     ];
 }
 

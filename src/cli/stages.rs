@@ -8,12 +8,14 @@ use clap::Args;
 
 use super::options::{SettingsAndSeed, SettingsFile, choice, paper, set, with_default};
 use super::output::say;
+use super::posterior;
+use crate::analysis::posterior::Posterior;
 use crate::analysis::statistics::{Estimate, mean, rate};
 use crate::experiments::progress::progress;
 use crate::files::{npy, prepare_folder, tables};
 use crate::numerics::rng::stream;
 use crate::pipeline::map_stream;
-use crate::settings::Settings;
+use crate::settings::{Base, Settings};
 use crate::stages::agent::Agent;
 use crate::stages::body_map::{BodyMap, BodyMaps, ClassicalScaling, Improvement, MapMethod, MapOf, scaled};
 use crate::stages::distance::information_metric;
@@ -198,6 +200,10 @@ impl Map {
 /// sensor), samples.csv (a row for each draw: chain,parts,log_posterior, and, if the truth is given,
 /// ari,eligible,tree_correct) and trees.csv (chain,child,parent and, for dpgmm-lj, the position of the joint
 /// on the body map, x1 ... xD). With --keep all, a column `sweep` follows the chain.
+///
+/// With --sampler split-merge, also posterior.csv (parts,probability), parts.csv (sensor,part,probability: the consensus of
+/// all draws), edges.csv (part,other,probability,in_tree: which parts are joined) and diagnostics.csv
+/// (quantity,r_hat,ess: whether the chains have mixed).
 #[derive(Args)]
 pub struct Infer {
     /// Body map: a .npy file, M x D
@@ -205,7 +211,7 @@ pub struct Infer {
     /// The mixture
     #[arg(long, value_parser = choice::<Model>(), default_value = "dpgmm-lj")]
     model: Model,
-    #[arg(long, value_parser = choice::<Sampler>(), help = with_default("Reading of the paper", paper().schema.sampler))]
+    #[arg(long, value_parser = choice::<Sampler>(), help = with_default("How to draw, and which reading of the paper that is", paper().schema.sampler))]
     sampler: Option<Sampler>,
     #[arg(long, value_name = "K", help = with_default("Number of components of the weak-limit approximation", paper().schema.components))]
     components: Option<usize>,
@@ -251,18 +257,28 @@ impl Infer {
         let draws = infer(&map, self.model, schema, experiment.seed, 1, &|| bar.inc(1))
             .with_context(|| input.display().to_string())?;
         bar.finish_and_clear();
-        let scores: Option<Vec<Score>> =
-            truth.map(|truth| draws.iter().map(|draw| score(draw, &truth, evaluate.eligible_ari)).collect());
+        let scores: Option<Vec<Score>> = truth
+            .as_ref()
+            .map(|truth| draws.iter().map(|draw| score(draw, truth, evaluate.eligible_ari)).collect());
         npy::write_assignments(&out.join("assignments.npy"), &draws)?;
         tables::write_draws(&out.join("samples.csv"), &draws, schema.keep, scores.as_deref())?;
         tables::write_trees(&out.join("trees.csv"), &draws, schema.keep)?;
         print_run(self.model, &map, draws.len(), &settings, out)?;
-        print_draws(&draws, scores.as_deref())?;
+        if schema.sampler == Sampler::SplitMerge {
+            let posterior = Posterior::of(&map, self.model, &draws, schema, experiment.seed, 1)?;
+            posterior::write(out, &posterior)?;
+            posterior::print(&posterior, truth.as_ref(), evaluate.eligible_ari)?;
+        } else {
+            print_draws(&draws, scores.as_deref())?;
+        }
         Ok(ExitCode::SUCCESS)
     }
 
     fn settings(&self) -> Result<Settings> {
         let mut settings = self.common.load(false)?;
+        if self.sampler.unwrap_or(settings.schema.sampler) == Sampler::SplitMerge {
+            settings = self.common.load_over(Base::SPLIT_MERGE)?;
+        }
         let schema = &mut settings.schema;
         set(&mut schema.sampler, self.sampler);
         set(&mut schema.components, self.components);

@@ -1,4 +1,4 @@
-//! Compare two partitions of the same items by the adjusted Rand index.
+//! Count, rename and compare partitions.
 
 use std::collections::BTreeMap;
 
@@ -9,6 +9,16 @@ pub fn sizes<T: Ord + Copy>(labels: &[T]) -> BTreeMap<T, usize> {
         *sizes.entry(*label).or_default() += 1;
     }
     sizes
+}
+
+/// The same partition with its labels named 0, 1, … in order of appearance.
+pub fn named_by_appearance(labels: &[usize]) -> Vec<usize> {
+    let mut names: BTreeMap<usize, usize> = BTreeMap::new();
+    let name = |label: &usize| {
+        let next = names.len();
+        *names.entry(*label).or_insert(next)
+    };
+    labels.iter().map(name).collect()
 }
 
 /// Adjusted Rand index of two partitions of the same sensors (Hubert & Arabie 1985): 1 for equal ones, 0

@@ -163,6 +163,7 @@ impl Row {
         match self.reading.filter(|_| self.id == HEADLINE) {
             Some(Sampler::Equations) => format!("{} (equations)", self.id),
             Some(Sampler::AuthorsCode) => format!("{} (authors' code)", self.id),
+            Some(Sampler::SplitMerge) => format!("{} (split-merge)", self.id),
             None => self.id.clone(),
         }
     }

@@ -8,3 +8,4 @@ pub mod numbers;
 pub mod page;
 pub mod plot;
 pub mod ranges;
+pub mod text_tree;

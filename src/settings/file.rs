@@ -15,7 +15,22 @@ use crate::files::one_line;
 
 /// `reproduce/paper.toml` itself, whose comments say where each value is from.
 pub const PAPER: &str = include_str!("../../reproduce/paper.toml");
-const QUICK: &str = include_str!("../../reproduce/quick.toml");
+
+/// A file of the project that is laid over `reproduce/paper.toml`.
+#[derive(Debug, Clone, Copy)]
+pub struct Base {
+    text: &'static str,
+    origin: &'static str,
+}
+
+impl Base {
+    /// A run of less than a minute.
+    pub const QUICK: Self =
+        Self { text: include_str!("../../reproduce/quick.toml"), origin: "reproduce/quick.toml" };
+    /// What goes with the split–merge sampler.
+    pub const SPLIT_MERGE: Self =
+        Self { text: include_str!("../../reproduce/split-merge.toml"), origin: "reproduce/split-merge.toml" };
+}
 
 /// Maximum length of a settings file, in bytes: far above any, and far below what a device or a wrong file may have.
 const MAX_FILE_BYTES: u64 = 1 << 20;
@@ -31,10 +46,18 @@ impl Settings {
     /// # Errors
     /// If the file cannot be read, is malformed, has an unknown key, or a value is out of range.
     pub fn load(quick: bool, file: Option<&Path>) -> Result<Self, SettingsError> {
+        Self::load_over(quick.then_some(Base::QUICK), file)
+    }
+
+    /// `reproduce/paper.toml`, with another file of the project over it, and `file` over both.
+    ///
+    /// # Errors
+    /// As for [`Self::load`].
+    pub fn load_over(base: Option<Base>, file: Option<&Path>) -> Result<Self, SettingsError> {
         let mut table = paper_table();
         let mut origin = "reproduce/paper.toml".to_owned();
-        if quick {
-            overlay(&mut table, parse(QUICK, "reproduce/quick.toml")?, "", "reproduce/quick.toml")?;
+        if let Some(Base { text, origin }) = base {
+            overlay(&mut table, parse(text, origin)?, "", origin)?;
         }
         if let Some(path) = file {
             let text = read_toml(path)?;

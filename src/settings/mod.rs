@@ -7,5 +7,5 @@ mod sections;
 
 pub use self::error::SettingsError;
 pub use self::experiment::{ExperimentSettings, MAX_LISTED};
-pub use self::file::{PAPER, read_toml};
+pub use self::file::{Base, PAPER, read_toml};
 pub use self::sections::Settings;

@@ -34,7 +34,7 @@ impl OtherReading {
         let condition = condition();
         let same: Vec<&Task> = tasks.iter().filter(|task| task.conditions.contains(&condition)).collect();
         let sampler = match run.settings.schema.sampler {
-            Sampler::Equations => Sampler::AuthorsCode,
+            Sampler::Equations | Sampler::SplitMerge => Sampler::AuthorsCode,
             Sampler::AuthorsCode => Sampler::Equations,
         };
         let task = |task: &&Task| -> Result<Task, SettingsError> {
@@ -106,7 +106,7 @@ fn condition() -> Condition {
 fn by(sampler: Sampler, settings: &Settings) -> Result<Settings, SettingsError> {
     let mut other = match sampler {
         Sampler::AuthorsCode => settings.with(AUTHORS, "reproduce/authors.toml"),
-        Sampler::Equations => settings.with(EQUATIONS, "reproduce/equations.toml"),
+        Sampler::Equations | Sampler::SplitMerge => settings.with(EQUATIONS, "reproduce/equations.toml"),
     }?;
     other.schema.chains = settings.schema.draws();
     other.validate()?;

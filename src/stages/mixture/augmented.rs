@@ -72,6 +72,11 @@ impl Augmented {
         self.rows.as_flattened_mut().iter_mut().zip(other.rows.as_flattened()).for_each(|(x, y)| *x += y);
     }
 
+    /// Subtracts another.
+    pub fn subtract(&mut self, other: &Self) {
+        self.rows.as_flattened_mut().iter_mut().zip(other.rows.as_flattened()).for_each(|(x, y)| *x -= y);
+    }
+
     /// Adds the outer products of rows.
     pub fn add_outer<'a>(&mut self, rows: impl Iterator<Item = &'a [Chunk]> + Clone) {
         vectorised(

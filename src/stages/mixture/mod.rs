@@ -13,5 +13,5 @@ pub(crate) use self::augmented::Augmented;
 pub use self::gaussian::{Gaussian, Rounding, standard_normal};
 pub(crate) use self::k_means::lloyd;
 pub use self::k_means::{Partition, k_means};
-pub use self::normal_inverse_wishart::{MeanCovariance, NormalInverseWishart};
+pub use self::normal_inverse_wishart::{MeanCovariance, NormalInverseWishart, Predictive};
 pub use self::points::{Points, SufficientStatistics};

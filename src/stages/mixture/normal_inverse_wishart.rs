@@ -143,6 +143,18 @@ impl NormalInverseWishart {
         Gaussian::from_rows(rows)
     }
 
+    /// The distribution of a further point (Murphy, 258).
+    pub fn predictive(&self) -> Predictive {
+        let dims = self.scale.dims;
+        let (weight, freedom) = (self.mean_weight(), self.degrees_of_freedom - dims as f64 + 1.0);
+        let root = (freedom * weight / (weight + 1.0)).sqrt();
+        let mut columns = Augmented::zeros(dims);
+        (0..dims).for_each(|i| columns.row_mut(i)[i] = root);
+        self.scale.solve(&mut columns);
+        let root = DMatrix::from_fn(dims, dims, |i, j| columns.row(j)[i]);
+        Predictive { gaussian: Gaussian::new(self.mean(), root), degrees_of_freedom: freedom }
+    }
+
     /// Log marginal likelihood of points with these statistics, μ and Σ integrated out (Murphy, 266).
     ///
     /// # Errors
@@ -160,6 +172,26 @@ impl NormalInverseWishart {
         let log_gamma: f64 =
             (0..self.scale.dims).map(|i| libm::lgamma((self.degrees_of_freedom - i as f64) / 2.0)).sum();
         0.5 * self.degrees_of_freedom * log_det - log_gamma
+    }
+}
+
+/// The t distribution of a point of a component whose Gaussian is integrated out.
+#[derive(Debug, Clone)]
+pub struct Predictive {
+    /// A Gaussian of the same location and scale.
+    pub gaussian: Gaussian,
+    /// ν − d + 1 > 0.
+    pub degrees_of_freedom: f64,
+}
+
+impl Predictive {
+    /// Log density at x.
+    pub fn log_density(&self, x: &[f64]) -> f64 {
+        let (dims, freedom) = (x.len() as f64, self.degrees_of_freedom);
+        let square = 2.0 * (self.gaussian.log_peak - self.gaussian.log_density(x));
+        let constant = libm::lgamma((freedom + dims) / 2.0) - libm::lgamma(freedom / 2.0)
+            + 0.5 * dims * (2.0 / freedom).ln();
+        self.gaussian.log_peak + constant - 0.5 * (freedom + dims) * (square / freedom).ln_1p()
     }
 }
 

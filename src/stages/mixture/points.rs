@@ -111,6 +111,13 @@ impl SufficientStatistics {
         self.moments.add_outer(std::iter::once(bordered(x).as_slice()));
     }
 
+    /// Takes a point away that was added.
+    pub fn remove(&mut self, x: &[f64]) {
+        let mut own = Self::new(self.moments.dims);
+        own.add(x);
+        self.moments.subtract(&own.moments);
+    }
+
     /// x̄; 0 if there are no points.
     pub fn mean(&self) -> DVector<f64> {
         let count = self.count().max(1.0);

@@ -57,12 +57,9 @@ impl<'a> Chain<'a> {
         model: Model,
         rng: &mut impl Rng,
     ) -> Result<Self, InferenceError> {
-        let components = settings.components;
         let labels = match settings.start {
-            Start::Uniform => (0..points.count).map(|_| rng.random_range(0..components)).collect(),
-            Start::KMeans => lloyd(points, components, rng).labels,
-            Start::Single => vec![0; points.count],
             Start::StickBreaking => Vec::new(),
+            _ => start_labels(points, settings, rng),
         };
         let departures = settings.departures();
         let mut chain = Self {
@@ -117,17 +114,8 @@ impl<'a> Chain<'a> {
     /// of k-means and Σ the identity.
     fn break_stick(&mut self, rng: &mut impl Rng) {
         let (points, size) = (self.points, self.settings.components);
-        let share = self.settings.concentration / size as f64;
-        let beta = Beta::new(1.0, share).expect("γ > 0");
-        let mut rest = 1.0;
-        let weights: Vec<f64> = (0..size)
-            .map(|_| {
-                let broken = rng.sample::<f64, _>(beta);
-                (rest * broken, rest *= 1.0 - broken).0
-            })
-            .collect();
-        let draw = WeightedIndex::new(&weights).expect("the first piece is positive");
-        self.labels = (0..points.count).map(|_| rng.sample(&draw)).collect();
+        let weights = stick(self.settings, rng);
+        self.labels = labels_from(&weights, points.count, rng);
         self.log_weights = weights.iter().map(|weight| weight.ln()).collect();
         let clusters = statistics(points, &lloyd(points, size, rng).labels, size);
         let identity = DMatrix::identity(points.dims, points.dims);
@@ -193,6 +181,11 @@ impl<'a> Chain<'a> {
         }
     }
 
+    /// q of each edge of the tree, on the body map. None for a DPGMM.
+    pub fn joints(&self) -> Vec<Vec<f64>> {
+        self.tree.joints.iter().map(|joint| self.points.uncentred(&joint.position)).collect()
+    }
+
     /// log p(x, z) with π and all (μ, Σ) integrated out, all constants included.
     ///
     /// Both models use that of the DPGMM, so that their draws can be compared. The joints are left out: with them, μ
@@ -211,6 +204,34 @@ impl<'a> Chain<'a> {
         };
         Ok(labels + occupied.map(component).sum::<Result<f64, InferenceError>>()?)
     }
+}
+
+/// The labels that a chain starts with, before anything else is drawn.
+pub fn start_labels(points: &Points, settings: &Schema, rng: &mut impl Rng) -> Vec<usize> {
+    let components = settings.components;
+    match settings.start.of_chain(0) {
+        Start::Uniform => (0..points.count).map(|_| rng.random_range(0..components)).collect(),
+        Start::KMeans => lloyd(points, components, rng).labels,
+        Start::Single | Start::Apart => vec![0; points.count],
+        Start::StickBreaking => labels_from(&stick(settings, rng), points.count, rng),
+    }
+}
+
+/// Weights of the K components by stick-breaking, with β_k ~ Beta(1, γ/K).
+fn stick(settings: &Schema, rng: &mut impl Rng) -> Vec<f64> {
+    let size = settings.components;
+    let beta = Beta::new(1.0, settings.concentration / size as f64).expect("γ > 0");
+    let mut rest = 1.0;
+    let mut piece = || {
+        let broken = rng.sample::<f64, _>(beta);
+        (rest * broken, rest *= 1.0 - broken).0
+    };
+    (0..size).map(|_| piece()).collect()
+}
+
+fn labels_from(weights: &[f64], count: usize, rng: &mut impl Rng) -> Vec<usize> {
+    let draw = WeightedIndex::new(weights).expect("the first piece is positive");
+    (0..count).map(|_| rng.sample(&draw)).collect()
 }
 
 /// Sufficient statistics of each component's points.

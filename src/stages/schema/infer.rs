@@ -4,12 +4,13 @@ use rayon::prelude::*;
 
 use super::draw::Draw;
 use super::error::{InferenceError, MAX_LABELS, matrices_fit};
-use super::gibbs::Chain;
+use super::gibbs::{Chain, start_labels};
 use super::prior::prior;
-use super::settings::{Keep, Model, Schema};
+use super::settings::{Keep, Model, Sampler, Schema};
+use super::split_merge::{Neighbours, SplitMerge, Target, TreePosterior, tree_given};
 use crate::numerics::rng::{Stream, stream};
 use crate::stages::body_map::BodyMap;
-use crate::stages::mixture::Points;
+use crate::stages::mixture::{NormalInverseWishart, Points};
 
 /// Runs `settings.chains` independent chains on a body map (M × d) and returns the draws that are kept, ordered by chain
 /// and sweep.
@@ -31,17 +32,98 @@ pub fn infer(
     let points = Points::new(map);
     let prior = prior(&points, settings)?;
     let stage = format!("{} {}", model.name(), map.dims);
+    let target = (settings.sampler == Sampler::SplitMerge).then(|| target(&points, &prior, settings, model));
     let chains: Result<Vec<Vec<Draw>>, InferenceError> = (0..settings.chains)
         .into_par_iter()
         .map(|chain| {
             let mut rng = stream(seed, simulation, &stage, chain);
-            let state = Chain::start(&points, &prior, settings, model, &mut rng)?;
-            let draws = run_chain(chain, state, &points, settings, &mut rng)?;
+            let settings = &Schema { start: settings.start.of_chain(chain), ..settings.clone() };
+            let draws = if let Some(target) = &target {
+                let labels = start_labels(&points, settings, &mut rng);
+                let state = SplitMerge::start(target, &labels, &mut rng)?;
+                run_chain(chain, state, settings, &mut rng)?
+            } else {
+                let state = Chain::start(&points, &prior, settings, model, &mut rng)?;
+                run_chain(chain, state, settings, &mut rng)?
+            };
             tick();
             Ok(draws)
         })
         .collect();
     Ok(chains?.into_iter().flatten().collect())
+}
+
+/// What all chains of the split–merge sampler share.
+fn target<'a>(
+    points: &'a Points,
+    prior: &'a NormalInverseWishart,
+    settings: &Schema,
+    model: Model,
+) -> Target<'a> {
+    let concentration = settings.concentration;
+    Target { points, prior, concentration, model, neighbours: Neighbours::of(points) }
+}
+
+/// The posterior of the tree over the parts of a partition of a body map's sensors, labels 0 to K − 1, with the prior that
+/// the settings ask for. Its stream is (seed, simulation, "tree d", 0).
+///
+/// # Errors
+/// As for [`infer`].
+pub fn tree_over(
+    map: &BodyMap,
+    labels: &[usize],
+    settings: &Schema,
+    seed: u64,
+    simulation: usize,
+) -> Result<TreePosterior, InferenceError> {
+    check_size(map, settings)?;
+    let points = Points::new(map);
+    let prior = prior(&points, settings)?;
+    let mut rng = stream(seed, simulation, &format!("tree {}", map.dims), 0);
+    Ok(tree_given(&target(&points, &prior, settings, Model::DpgmmLj), labels, &mut rng)?)
+}
+
+/// The state of a chain, by either sampler.
+trait State {
+    /// Updates every variable once.
+    fn sweep(&mut self, rng: &mut Stream) -> Result<(), InferenceError>;
+
+    /// The state as a draw of a chain after a sweep.
+    fn draw(&self, chain: usize, sweep: usize, rng: &mut Stream) -> Result<Draw, InferenceError>;
+}
+
+impl State for Chain<'_> {
+    fn sweep(&mut self, rng: &mut Stream) -> Result<(), InferenceError> {
+        Chain::sweep(self, rng)
+    }
+
+    fn draw(&self, chain: usize, sweep: usize, _: &mut Stream) -> Result<Draw, InferenceError> {
+        Ok(Draw {
+            chain,
+            sweep,
+            labels: self.labels.clone(),
+            tree: self.edges(),
+            joints: self.joints(),
+            log_posterior: Some(self.log_posterior()?),
+        })
+    }
+}
+
+impl State for SplitMerge<'_> {
+    fn sweep(&mut self, rng: &mut Stream) -> Result<(), InferenceError> {
+        Ok(SplitMerge::sweep(self, rng)?)
+    }
+
+    fn draw(&self, chain: usize, sweep: usize, rng: &mut Stream) -> Result<Draw, InferenceError> {
+        Ok(Draw {
+            chain,
+            sweep,
+            labels: self.labels.clone(),
+            tree: self.edges(rng)?,
+            joints: Vec::new(),
+            log_posterior: Some(self.log_posterior()),
+        })
+    }
 }
 
 /// Refuses a map or settings that would take too much memory, before anything of that size is made.
@@ -63,8 +145,7 @@ fn check_size(map: &BodyMap, settings: &Schema) -> Result<(), InferenceError> {
 /// Runs all sweeps of one chain, and returns the draws that are kept.
 fn run_chain(
     chain: usize,
-    mut state: Chain,
-    points: &Points,
+    mut state: impl State,
     settings: &Schema,
     rng: &mut Stream,
 ) -> Result<Vec<Draw>, InferenceError> {
@@ -76,14 +157,7 @@ fn run_chain(
             Keep::All => sweep > settings.burn_in,
         };
         if keep {
-            draws.push(Draw {
-                chain,
-                sweep,
-                labels: state.labels.clone(),
-                tree: state.edges(),
-                joints: state.tree.joints.iter().map(|joint| points.uncentred(&joint.position)).collect(),
-                log_posterior: Some(state.log_posterior()?),
-            });
+            draws.push(state.draw(chain, sweep, rng)?);
         }
     }
     Ok(draws)

@@ -13,12 +13,15 @@ pub(crate) mod joints;
 pub(crate) mod latent_tree;
 mod prior;
 mod settings;
+pub(crate) mod split_merge;
+pub(crate) mod weighted_trees;
 
 pub use self::departures::{Densities, Departures, EmptyComponents, MeanCovariance, Root};
 pub use self::draw::{Draw, best, one_part};
 pub use self::error::{InferenceError, matrices_fit};
 pub use self::gibbs::Chain;
-pub use self::infer::infer;
+pub use self::infer::{infer, tree_over};
 pub use self::joints::collapsed_cost;
 pub use self::prior::prior;
 pub use self::settings::{EdgeWeight, Keep, Model, Prior, Sampler, Schema, Start};
+pub use self::split_merge::TreePosterior;

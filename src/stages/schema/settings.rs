@@ -53,6 +53,18 @@ pub enum Start {
     Single,
     /// Weights by stick-breaking, labels from them alone, means by k-means, and identity covariances.
     StickBreaking,
+    /// One chain after the other: all points in one component, k-means, uniform.
+    Apart,
+}
+
+impl Start {
+    /// What a chain of this number starts with.
+    pub fn of_chain(self, chain: usize) -> Self {
+        match self {
+            Self::Apart => [Self::Single, Self::KMeans, Self::Uniform][chain % 3],
+            own => own,
+        }
+    }
 }
 
 /// The scale Ψ₀ of the components' prior; the setting `scale` multiplies it.
@@ -67,7 +79,7 @@ pub enum Prior {
     InverseCovariance,
 }
 
-/// The reading of the paper that the sampler follows.
+/// The sampler, and which reading of the paper it follows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Sampler {
@@ -75,6 +87,8 @@ pub enum Sampler {
     Equations,
     /// The first author's public code, as [`Departures`] from the equations.
     AuthorsCode,
+    /// Neither: split–merge moves on the mixture without truncation, with joints and trees integrated out.
+    SplitMerge,
 }
 
 impl Sampler {
@@ -83,6 +97,7 @@ impl Sampler {
         match self {
             Self::Equations => "as the equations say",
             Self::AuthorsCode => "as the authors' code computes",
+            Self::SplitMerge => "by the split-merge sampler",
         }
     }
 }
@@ -135,7 +150,7 @@ impl Schema {
     /// How the sampler departs from the equations.
     pub fn departures(&self) -> &Departures {
         match self.sampler {
-            Sampler::Equations => &Departures::NONE,
+            Sampler::Equations | Sampler::SplitMerge => &Departures::NONE,
             Sampler::AuthorsCode => &self.authors,
         }
     }

@@ -1,0 +1,113 @@
+//! Sum up many partitions by one: the one that is nearest to all, and how sure each label is.
+//!
+//! Labels of different draws do not compare: part 2 of one may be part 0 of another. So draws are compared by their
+//! partitions, and labels are matched to those of the consensus.
+
+use std::collections::HashMap;
+
+use crate::numerics::partition::{named_by_appearance, sizes};
+
+/// Candidates for the consensus, at most: the most frequent partitions.
+const MOST_CANDIDATES: usize = 300;
+
+/// The consensus of some partitions.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Consensus {
+    /// The part of each sensor: 0, 1, … in order of their first sensors.
+    pub labels: Vec<usize>,
+    /// Of each sensor, the share of draws that have it in the part that matches its own.
+    pub certainty: Vec<f64>,
+    /// Mean variation of information between it and the draws, in bits: 0 if all draws agree.
+    pub loss: f64,
+}
+
+/// The partition, among those drawn, with the least mean variation of information to all draws (Meilă 2007; Wade and
+/// Ghahramani 2018).
+///
+/// # Panics
+/// If there is no partition.
+pub fn consensus(draws: &[&[usize]]) -> Consensus {
+    let mut counts: HashMap<Vec<usize>, usize> = HashMap::new();
+    draws.iter().for_each(|labels| *counts.entry(named_by_appearance(labels)).or_default() += 1);
+    let mut distinct: Vec<(Vec<usize>, usize)> = counts.into_iter().collect();
+    // The order of a map is its own, so equal counts go by their labels.
+    distinct.sort_by(|a, b| b.1.cmp(&a.1).then_with(|| a.0.cmp(&b.0)));
+    let loss = |labels: &[usize]| {
+        let total: f64 = distinct
+            .iter()
+            .map(|(other, count)| *count as f64 * variation_of_information(labels, other))
+            .sum();
+        total / draws.len() as f64
+    };
+    let candidates = distinct.iter().take(MOST_CANDIDATES).map(|(labels, _)| (loss(labels), labels));
+    let (loss, labels) = candidates
+        .reduce(|kept, next| if next.0 < kept.0 { next } else { kept })
+        .expect("draws must not be empty");
+    let mut agreeing = vec![0.0; labels.len()];
+    for (other, count) in &distinct {
+        let names = matched(labels, other);
+        for ((sum, label), other) in agreeing.iter_mut().zip(labels).zip(other) {
+            if names.get(other) == Some(label) {
+                *sum += *count as f64;
+            }
+        }
+    }
+    agreeing.iter_mut().for_each(|sum| *sum /= draws.len() as f64);
+    Consensus { labels: labels.clone(), certainty: agreeing, loss }
+}
+
+/// Variation of information of two partitions of the same items, in bits: what each says beyond the other (Meilă 2007).
+pub fn variation_of_information(first: &[usize], second: &[usize]) -> f64 {
+    let both: Vec<(usize, usize)> = first.iter().copied().zip(second.iter().copied()).collect();
+    let total = first.len() as f64;
+    let entropy = |counts: &mut dyn Iterator<Item = usize>| {
+        counts.map(|count| count as f64 / total).map(|share| -share * share.log2()).sum::<f64>()
+    };
+    let joint = entropy(&mut sizes(&both).into_values());
+    let alone = |labels: &[usize]| entropy(&mut sizes(labels).into_values());
+    (2.0 * joint - alone(first) - alone(second)).max(0.0)
+}
+
+/// Which label of `labels` each label of `other` stands for: those that share most items first, each once.
+fn matched(labels: &[usize], other: &[usize]) -> HashMap<usize, usize> {
+    let both: Vec<(usize, usize)> = other.iter().copied().zip(labels.iter().copied()).collect();
+    let mut shared: Vec<((usize, usize), usize)> = sizes(&both).into_iter().collect();
+    shared.sort_by(|a, b| b.1.cmp(&a.1).then(a.0.cmp(&b.0)));
+    let mut names: HashMap<usize, usize> = HashMap::new();
+    for ((other, label), _) in shared {
+        if !names.contains_key(&other) && !names.values().any(|taken| *taken == label) {
+            names.insert(other, label);
+        }
+    }
+    names
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn variation_of_information_of_known_partitions() {
+        assert_eq!(variation_of_information(&[0, 0, 1, 1], &[7, 7, 3, 3]), 0.0);
+        // One says nothing, the other one bit.
+        assert!((variation_of_information(&[0, 0, 0, 0], &[0, 0, 1, 1]) - 1.0).abs() < 1e-12);
+        // Independent: each says one bit beyond the other.
+        assert!((variation_of_information(&[0, 0, 1, 1], &[0, 1, 0, 1]) - 2.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_consensus_is_what_most_say_whatever_they_call_it() {
+        let draws: [&[usize]; 4] =
+            [&[3, 3, 3, 0, 0, 0], &[0, 0, 0, 5, 5, 5], &[1, 1, 1, 2, 2, 2], &[1, 1, 2, 2, 2, 2]];
+        let found = consensus(&draws);
+        assert_eq!(found.labels, [0, 0, 0, 1, 1, 1]);
+        assert_eq!(found.certainty, [1.0, 1.0, 0.75, 1.0, 1.0, 1.0]);
+        assert!(found.loss > 0.0 && found.loss < 0.5);
+    }
+
+    #[test]
+    fn a_part_that_a_draw_splits_counts_for_its_larger_half() {
+        let draws: [&[usize]; 3] = [&[0, 0, 0, 1], &[0, 0, 0, 1], &[0, 0, 2, 1]];
+        assert_eq!(consensus(&draws).certainty, [1.0, 1.0, 2.0 / 3.0, 1.0]);
+    }
+}

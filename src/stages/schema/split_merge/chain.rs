@@ -1,0 +1,362 @@
+//! Run the split–merge sampler: moves that split a cluster or merge two, and Gibbs sweeps between them.
+//!
+//! Its target, with π and the joints q integrated out, is
+//!
+//! p(z, μ, Σ, x) ∝ γ^K ∏_k Γ(n_k) NIW(μ_k, Σ_k) ∏_{i in k} N(x_i; μ_k, Σ_k) × (1 / K^(K−2)) Σ_C ∏_{(s, c) in C} N(μ_s; μ_c, Σ_s + Σ_c),
+//!
+//! the Dirichlet-process mixture itself, not truncated at K components, and a uniform prior over the trees C of its
+//! clusters. Without joints (DPGMM) the last factor is missing. See `docs/split-merge.md`.
+
+use rand::seq::IndexedRandom;
+use rand::{Rng, RngExt};
+use rand_distr::Gamma;
+
+use super::clusters::{Cluster, graph, log_joints};
+use super::collapsed::collapsed_labels;
+use super::halves::{Care, Halves};
+use super::neighbours::Neighbours;
+use crate::stages::mixture::{
+    Gaussian, NormalInverseWishart, Points, Rounding, SufficientStatistics, assignments,
+};
+use crate::stages::schema::joints::draw_between;
+use crate::stages::schema::settings::Model;
+use crate::stages::schema::weighted_trees::WeightedGraph;
+use crate::stages::tree::Edge;
+
+/// A move over the clusters of two points.
+#[derive(Debug, Clone, Copy)]
+enum Move {
+    /// Splits their cluster, or merges both of theirs.
+    SplitOrMerge(Care),
+    /// Splits the points of both of theirs anew.
+    SplitAnew(Care),
+}
+
+/// The moves of a sweep.
+const MOVES: [Move; 8] = [
+    Move::SplitOrMerge(Care::Odds(1.0)),
+    Move::SplitOrMerge(Care::Blind),
+    Move::SplitAnew(Care::Odds(1.0)),
+    Move::SplitAnew(Care::Odds(0.5)),
+    Move::SplitOrMerge(Care::Odds(0.1)),
+    Move::SplitOrMerge(Care::Blind),
+    Move::SplitAnew(Care::Odds(0.3)),
+    Move::SplitAnew(Care::Odds(0.5)),
+];
+
+/// Clusters that a chain may have: a bound for the memory, far above what a body has.
+const MOST_CLUSTERS: usize = 256;
+
+/// What all chains of a map share.
+pub struct Target<'a> {
+    /// x.
+    pub points: &'a Points,
+    /// The prior of the clusters' Gaussians.
+    pub prior: &'a NormalInverseWishart,
+    /// γ.
+    pub concentration: f64,
+    /// With joints or without.
+    pub model: Model,
+    /// Which points a move is likely to be drawn for.
+    pub neighbours: Neighbours,
+}
+
+/// The state of one chain.
+pub struct SplitMerge<'a> {
+    target: &'a Target<'a>,
+    /// z: the cluster of each point.
+    pub labels: Vec<usize>,
+    clusters: Vec<Cluster>,
+}
+
+impl<'a> SplitMerge<'a> {
+    /// Starts from labels, any numbers, and draws the Gaussians given them.
+    ///
+    /// # Errors
+    /// [`Rounding`] if a covariance is not positive definite in floating point.
+    pub fn start(target: &'a Target<'a>, labels: &[usize], rng: &mut impl Rng) -> Result<Self, Rounding> {
+        let size = labels.iter().max().map_or(0, |largest| largest + 1);
+        let mut members = vec![Vec::new(); size];
+        labels.iter().enumerate().for_each(|(i, &label)| members[label].push(i));
+        members.retain(|members| !members.is_empty());
+        let clusters: Result<Vec<Cluster>, Rounding> = members
+            .into_iter()
+            .map(|members| Cluster::draw(target.points, target.prior, members, rng))
+            .collect();
+        let mut chain = Self { target, labels: vec![0; labels.len()], clusters: clusters? };
+        chain.number();
+        Ok(chain)
+    }
+
+    /// Runs one sweep: some split–merge moves, then the Gaussians, then the labels.
+    ///
+    /// # Errors
+    /// As for [`Self::start`].
+    pub fn sweep(&mut self, rng: &mut impl Rng) -> Result<(), Rounding> {
+        for proposed in MOVES {
+            self.try_move(proposed, rng)?;
+        }
+        self.draw_gaussians(rng)?;
+        self.draw_labels(rng)
+    }
+
+    /// Draws two points, and proposes a move (Jain and Neal 2004): first a cluster and a point of it, evenly, and then another
+    /// point.
+    ///
+    /// The Gaussians of new clusters are drawn from their posterior given the points alone, so that of the ratio of
+    /// targets and proposals these remain: the marginal likelihoods of the points, the prior of the partition, the
+    /// probabilities of the splits, the factor of the joints, and the probability 1 / (K n_k) of the first point.
+    fn try_move(&mut self, proposed: Move, rng: &mut impl Rng) -> Result<(), Rounding> {
+        let cluster = self.clusters.choose(rng).expect("a chain has clusters");
+        let first = *cluster.members.choose(rng).expect("a cluster has points");
+        let Some(second) = self.target.neighbours.second(first, rng) else { return Ok(()) };
+        let ends = [first, second];
+        let pair = ends.map(|end| self.labels[end]);
+        match (proposed, pair[0] == pair[1]) {
+            (Move::SplitOrMerge(care), true) => self.split(pair[0], ends, care, rng),
+            (Move::SplitOrMerge(care), false) => self.merge(pair, ends, care, rng),
+            (Move::SplitAnew(_), true) => Ok(()),
+            (Move::SplitAnew(care), false) => self.split_anew(pair, ends, care, rng),
+        }
+    }
+
+    fn split(&mut self, at: usize, ends: [usize; 2], care: Care, rng: &mut impl Rng) -> Result<(), Rounding> {
+        if self.clusters.len() >= MOST_CLUSTERS {
+            return Ok(());
+        }
+        let Target { points, prior, .. } = *self.target;
+        let (sides, log_probability) =
+            Halves::new(points, prior, &self.clusters[at].members, ends, care)?.draw(rng);
+        let [first, second] = sides;
+        let halves = [Cluster::draw(points, prior, first, rng)?, Cluster::draw(points, prior, second, rng)?];
+        let gain = self.gain(&[at], &halves)? + self.first_point(&[at], &halves);
+        if accepted(gain - log_probability, rng) {
+            let [first, second] = halves;
+            self.clusters[at] = first;
+            self.clusters.push(second);
+            self.number();
+        }
+        Ok(())
+    }
+
+    fn merge(
+        &mut self,
+        pair: [usize; 2],
+        ends: [usize; 2],
+        care: Care,
+        rng: &mut impl Rng,
+    ) -> Result<(), Rounding> {
+        let Target { points, prior, .. } = *self.target;
+        let members = self.members_of(pair);
+        let halves = Halves::new(points, prior, &members, ends, care)?;
+        let log_probability = halves.log_probability(|i| self.labels[i] == pair[0]);
+        let whole = [Cluster::draw(points, prior, members, rng)?];
+        let gain = self.gain(&pair, &whole)? + self.first_point(&pair, &whole);
+        if accepted(gain + log_probability, rng) {
+            let [whole] = whole;
+            self.clusters[pair[0]] = whole;
+            self.clusters.swap_remove(pair[1]);
+            self.number();
+        }
+        Ok(())
+    }
+
+    fn split_anew(
+        &mut self,
+        pair: [usize; 2],
+        ends: [usize; 2],
+        care: Care,
+        rng: &mut impl Rng,
+    ) -> Result<(), Rounding> {
+        let Target { points, prior, .. } = *self.target;
+        let halves = Halves::new(points, prior, &self.members_of(pair), ends, care)?;
+        let before = halves.log_probability(|i| self.labels[i] == pair[0]);
+        let ([first, second], after) = halves.draw(rng);
+        if first == self.clusters[pair[0]].members {
+            return Ok(());
+        }
+        let anew = [Cluster::draw(points, prior, first, rng)?, Cluster::draw(points, prior, second, rng)?];
+        let gain = self.gain(&pair, &anew)? + self.first_point(&pair, &anew);
+        if accepted(gain + before - after, rng) {
+            for (k, cluster) in pair.into_iter().zip(anew) {
+                self.clusters[k] = cluster;
+            }
+            self.number();
+        }
+        Ok(())
+    }
+
+    /// Log ratio of the probability that the first point is drawn after a move, to that before: 1 / (K n) with K clusters and n
+    /// points in its own, which is the first of `old` before, and the first of `new` after.
+    fn first_point(&self, old: &[usize], new: &[Cluster]) -> f64 {
+        let before = self.clusters.len() as f64;
+        let after = before + new.len() as f64 - old.len() as f64;
+        (before * self.clusters[old[0]].count()).ln() - (after * new[0].count()).ln()
+    }
+
+    /// The points of two clusters, rising.
+    fn members_of(&self, pair: [usize; 2]) -> Vec<usize> {
+        let mut members = pair.map(|k| self.clusters[k].members.as_slice()).concat();
+        members.sort_unstable();
+        members
+    }
+
+    /// Log ratio of the target with the clusters `new` for those of the numbers `old`, to the target as it is, the
+    /// densities of Gaussians under their posteriors apart.
+    fn gain(&self, old: &[usize], new: &[Cluster]) -> Result<f64, Rounding> {
+        let Target { concentration, model, .. } = *self.target;
+        let own =
+            |cluster: &Cluster| concentration.ln() + libm::lgamma(cluster.count()) + cluster.log_marginal;
+        let before: Vec<&Cluster> = self.clusters.iter().collect();
+        let kept = self.clusters.iter().enumerate().filter(|(k, _)| !old.contains(k));
+        let after: Vec<&Cluster> = kept.map(|(_, cluster)| cluster).chain(new).collect();
+        let points =
+            new.iter().map(own).sum::<f64>() - old.iter().map(|&k| own(&self.clusters[k])).sum::<f64>();
+        Ok(points + log_joints(model, &after)? - log_joints(model, &before)?)
+    }
+
+    /// The tree and its joints given (μ, Σ) of all clusters; some labels given these, with (μ, Σ) integrated out; and then
+    /// (μ, Σ) given the points and joints of each (equations 16 to 18). The tree and the joints are forgotten again.
+    fn draw_gaussians(&mut self, rng: &mut impl Rng) -> Result<(), Rounding> {
+        let mut data = self.points_and_joints(rng)?;
+        let mut labels = self.labels.clone();
+        collapsed_labels(self.target.points, self.target.prior, &mut data, &mut labels, rng)?;
+        self.take(labels)?;
+        self.draw_gaussians_given(&data, rng)
+    }
+
+    /// The same with all labels kept.
+    ///
+    /// # Errors
+    /// As for [`Self::start`].
+    pub fn draw_gaussians_alone(&mut self, rng: &mut impl Rng) -> Result<(), Rounding> {
+        let data = self.points_and_joints(rng)?;
+        self.draw_gaussians_given(&data, rng)
+    }
+
+    /// The statistics of the points and joints of each cluster, for a tree and joints that are drawn.
+    fn points_and_joints(&self, rng: &mut impl Rng) -> Result<Vec<SufficientStatistics>, Rounding> {
+        let mut data: Vec<SufficientStatistics> =
+            self.clusters.iter().map(|cluster| cluster.statistics.clone()).collect();
+        for (i, j) in self.draw_tree(rng)? {
+            let information = |k: usize| self.clusters[k].gaussian.information();
+            let joint = draw_between(&information(i), &information(j), rng)?;
+            data[i].add(joint.as_slice());
+            data[j].add(joint.as_slice());
+        }
+        Ok(data)
+    }
+
+    fn draw_gaussians_given(
+        &mut self,
+        data: &[SufficientStatistics],
+        rng: &mut impl Rng,
+    ) -> Result<(), Rounding> {
+        for (cluster, data) in self.clusters.iter_mut().zip(data) {
+            cluster.gaussian = self.target.prior.posterior(data)?.draw(rng);
+        }
+        Ok(())
+    }
+
+    /// Takes new labels of the same clusters, none of which is empty.
+    fn take(&mut self, labels: Vec<usize>) -> Result<(), Rounding> {
+        let mut members = vec![Vec::new(); self.clusters.len()];
+        labels.iter().enumerate().for_each(|(i, &label)| members[label].push(i));
+        for (cluster, members) in self.clusters.iter_mut().zip(members) {
+            if members != cluster.members {
+                cluster.statistics = SufficientStatistics::of(self.target.points, &members);
+                cluster.log_marginal = self.target.prior.log_marginal(&cluster.statistics)?;
+                cluster.members = members;
+            }
+        }
+        self.labels = labels;
+        Ok(())
+    }
+
+    /// A tree over the clusters, given their Gaussians; none without joints.
+    fn draw_tree(&self, rng: &mut impl Rng) -> Result<Vec<(usize, usize)>, Rounding> {
+        match self.target.model {
+            Model::Dpgmm => Ok(Vec::new()),
+            Model::DpgmmLj => Ok(self.graph()?.draw_tree(rng)),
+        }
+    }
+
+    /// The weights of all trees over the clusters.
+    ///
+    /// # Errors
+    /// As for [`Self::start`].
+    pub fn graph(&self) -> Result<WeightedGraph, Rounding> {
+        graph(&self.clusters.iter().collect::<Vec<_>>())
+    }
+
+    /// The labels of all points but one of each cluster, given weights π of the clusters that there are (Chang and Fisher
+    /// 2013). One point of each, drawn evenly, stays, so that none is emptied; that choice has the probability ∏ 1 / n_k, and
+    /// new labels are accepted with what it becomes.
+    fn draw_labels(&mut self, rng: &mut impl Rng) -> Result<(), Rounding> {
+        let log_weights: Vec<f64> = self
+            .clusters
+            .iter()
+            .map(|cluster| {
+                let gamma = Gamma::new(cluster.count(), 1.0).expect("a cluster has points");
+                rng.sample::<f64, _>(gamma).max(f64::MIN_POSITIVE).ln()
+            })
+            .collect();
+        let anchors: Vec<usize> = self
+            .clusters
+            .iter()
+            .map(|cluster| *cluster.members.choose(rng).expect("a cluster has points"))
+            .collect();
+        let gaussians: Vec<Gaussian> = self.clusters.iter().map(|cluster| cluster.gaussian.clone()).collect();
+        let mut labels = self.labels.clone();
+        assignments::draw_labels(self.target.points, &gaussians, &log_weights, false, &mut labels, rng);
+        anchors.iter().enumerate().for_each(|(k, &anchor)| labels[anchor] = k);
+        if labels == self.labels {
+            return Ok(());
+        }
+        let mut counts = vec![0.0; self.clusters.len()];
+        labels.iter().for_each(|&label| counts[label] += 1.0);
+        let ratio: f64 = self
+            .clusters
+            .iter()
+            .zip(counts)
+            .map(|(cluster, count)| cluster.count().ln() - f64::ln(count))
+            .sum();
+        if accepted(ratio, rng) {
+            self.take(labels)?;
+        }
+        Ok(())
+    }
+
+    /// Gives each point the number of its cluster.
+    fn number(&mut self) {
+        for (k, cluster) in self.clusters.iter().enumerate() {
+            cluster.members.iter().for_each(|&i| self.labels[i] = k);
+        }
+    }
+
+    /// A tree over the clusters.
+    ///
+    /// # Errors
+    /// As for [`Self::start`].
+    pub fn edges(&self, rng: &mut impl Rng) -> Result<Vec<Edge>, Rounding> {
+        let tree = self.draw_tree(rng)?;
+        Ok(tree.into_iter().map(|(child, parent)| Edge { child, parent }).collect())
+    }
+
+    /// log p(x, z) of the Dirichlet-process mixture, with π and all (μ, Σ) integrated out and the joints left out.
+    pub fn log_posterior(&self) -> f64 {
+        let concentration = self.target.concentration;
+        let own =
+            |cluster: &Cluster| concentration.ln() + libm::lgamma(cluster.count()) + cluster.log_marginal;
+        libm::lgamma(concentration) - libm::lgamma(concentration + self.labels.len() as f64)
+            + self.clusters.iter().map(own).sum::<f64>()
+    }
+}
+
+/// Whether a proposal of this log acceptance ratio is accepted.
+fn accepted(log_ratio: f64, rng: &mut impl Rng) -> bool {
+    rng.random::<f64>().ln() < log_ratio
+}
+
+#[cfg(test)]
+mod tests;

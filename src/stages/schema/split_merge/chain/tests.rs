@@ -1,0 +1,244 @@
+//! The split–merge sampler against brute force: the exact posterior of partitions and trees of tiny data, and Geweke's
+//! (2004) joint-distribution test of whole sweeps. Every test rejects deliberately broken twins.
+
+use std::collections::BTreeMap;
+
+use nalgebra::{DMatrix, DVector};
+
+use super::*;
+use crate::numerics::rng::{Stream, stream};
+use crate::numerics::testing::{ALPHA, chi_squared};
+use crate::stages::schema::joints::collapsed_cost;
+
+const CONCENTRATION: f64 = 1.5;
+
+fn target<'a>(points: &'a Points, prior: &'a NormalInverseWishart, model: Model) -> Target<'a> {
+    Target { points, prior, concentration: CONCENTRATION, model, neighbours: Neighbours::of(points) }
+}
+
+/// A mistake that a test must find.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Mutant {
+    None,
+    /// Splits are accepted without the probability of the proposal.
+    NoProposal,
+    /// Gaussians are drawn from their points alone.
+    NoJoints,
+    /// The first point of a move is taken for one drawn evenly from all.
+    NoFirstPoint,
+}
+
+impl Mutant {
+    fn sweep(self, chain: &mut SplitMerge, rng: &mut Stream) {
+        chain.sweep(rng).unwrap();
+        match self {
+            Self::None => {}
+            Self::NoProposal => split_without(chain, rng, |log_probability| log_probability),
+            Self::NoFirstPoint => split_without(chain, rng, |_| 1.0),
+            Self::NoJoints => {
+                for cluster in &mut chain.clusters {
+                    let posterior = chain.target.prior.posterior(&cluster.statistics).unwrap();
+                    cluster.gaussian = posterior.draw(rng);
+                }
+            }
+        }
+    }
+}
+
+/// A further move whose acceptance ratio is wrong by a factor.
+fn split_without(chain: &mut SplitMerge, rng: &mut Stream, log_mistake: impl Fn(f64) -> f64) {
+    let first = rng.random_range(0..chain.labels.len());
+    let second = chain.target.neighbours.second(first, rng).unwrap();
+    let at = chain.labels[first];
+    if chain.labels[second] != at {
+        return;
+    }
+    let Target { points, prior, .. } = *chain.target;
+    let members = &chain.clusters[at].members;
+    let halves = Halves::new(points, prior, members, [first, second], Care::Odds(1.0)).unwrap();
+    let (sides, log_probability) = halves.draw(rng);
+    let sides = sides.map(|members| Cluster::draw(points, prior, members, rng).unwrap());
+    let gain = chain.gain(&[at], &sides).unwrap();
+    if accepted(gain - log_probability + log_mistake(log_probability), rng) {
+        let [first, second] = sides;
+        chain.clusters[at] = first;
+        chain.clusters.push(second);
+        chain.number();
+    }
+}
+
+/// The partition behind labels: renamed in order of appearance.
+fn partition(labels: &[usize]) -> Vec<usize> {
+    let mut names = Vec::new();
+    let name = |label: &usize| {
+        names.iter().position(|name| name == label).unwrap_or_else(|| {
+            names.push(*label);
+            names.len() - 1
+        })
+    };
+    labels.iter().map(name).collect()
+}
+
+/// All partitions of n points.
+fn partitions(n: usize) -> Vec<Vec<usize>> {
+    let mut all = vec![vec![0]];
+    for _ in 1..n {
+        all = all
+            .into_iter()
+            .flat_map(|labels| {
+                let next = labels.iter().max().unwrap() + 1;
+                (0..=next).map(move |label| labels.iter().copied().chain([label]).collect())
+            })
+            .collect();
+    }
+    all
+}
+
+fn clusters(
+    points: &Points,
+    prior: &NormalInverseWishart,
+    labels: &[usize],
+    rng: &mut Stream,
+) -> Vec<Cluster> {
+    let of = |k: usize| (0..labels.len()).filter(|&i| labels[i] == k).collect();
+    (0..=*labels.iter().max().unwrap()).map(|k| Cluster::draw(points, prior, of(k), rng).unwrap()).collect()
+}
+
+/// log p(x, z) of the mixture without joints, up to a constant.
+fn log_mixture(clusters: &[Cluster]) -> f64 {
+    let own = |cluster: &Cluster| {
+        CONCENTRATION.ln() + libm::lgamma(cluster.members.len() as f64) + cluster.log_marginal
+    };
+    clusters.iter().map(own).sum()
+}
+
+/// p value of a χ² test of visits to states against their probabilities, not normalised.
+fn fit<K: Ord + Clone>(exact: &BTreeMap<K, f64>, visits: impl Iterator<Item = K>) -> f64 {
+    let mut counts: BTreeMap<K, f64> = exact.keys().map(|key| (key.clone(), 0.0)).collect();
+    visits.for_each(|key| *counts.get_mut(&key).expect("a state that can be") += 1.0);
+    let total: f64 = exact.values().sum();
+    let probabilities: Vec<f64> = exact.values().map(|mass| mass / total).collect();
+    chi_squared(&counts.into_values().collect::<Vec<_>>(), &probabilities)
+}
+
+fn line(points: &[f64]) -> (Points, NormalInverseWishart) {
+    let prior =
+        NormalInverseWishart::new(DVector::from_element(1, 0.2), 0.4, DMatrix::from_element(1, 1, 4.0), 8.0);
+    (Points::from_rows(1, points.to_vec()), prior.unwrap())
+}
+
+/// Every 10th of many sweeps of a chain, by when it has forgotten where it was.
+fn visits(chain: &mut SplitMerge, mutant: Mutant, rng: &mut Stream) -> Vec<Vec<usize>> {
+    let visit = |_| {
+        (0..10).for_each(|_| mutant.sweep(chain, rng));
+        partition(&chain.labels)
+    };
+    (0..6_000).map(visit).collect()
+}
+
+#[test]
+fn the_chain_visits_every_partition_of_six_points_as_often_as_the_posterior_says() {
+    let (points, prior) = line(&[-2.0, -1.6, 0.1, 0.3, 1.9, 2.3]);
+    let mut rng = stream(5, 1, "partitions", 0);
+    let mass = |labels: &Vec<usize>| log_mixture(&clusters(&points, &prior, labels, &mut rng)).exp();
+    let exact: BTreeMap<Vec<usize>, f64> = {
+        let mut mass = mass;
+        partitions(6).into_iter().map(|labels| (labels.clone(), mass(&labels))).collect()
+    };
+    let target = target(&points, &prior, Model::Dpgmm);
+    for mutant in [Mutant::None, Mutant::NoProposal, Mutant::NoFirstPoint] {
+        let mut rng = stream(5, 1, "partitions", 1);
+        let mut chain = SplitMerge::start(&target, &[0; 6], &mut rng).unwrap();
+        let p_value = fit(&exact, visits(&mut chain, mutant, &mut rng).into_iter());
+        assert_eq!(p_value > ALPHA, mutant == Mutant::None, "{mutant:?}: {p_value}");
+    }
+}
+
+/// All trees of up to four nodes, edges as (larger, smaller), sorted.
+fn trees(nodes: usize) -> Vec<Vec<(usize, usize)>> {
+    let pairs: Vec<(usize, usize)> = (0..nodes).flat_map(|i| (0..i).map(move |j| (i, j))).collect();
+    let subsets = (0..1usize << pairs.len()).filter(|set| set.count_ones() as usize + 1 == nodes);
+    let edges = |set: usize| -> Vec<(usize, usize)> {
+        (0..pairs.len()).filter(|at| set >> at & 1 == 1).map(|at| pairs[at]).collect()
+    };
+    let connected = |edges: &Vec<(usize, usize)>| {
+        let mut part: Vec<usize> = (0..nodes).collect();
+        for &(i, j) in edges {
+            let (kept, lost) = (part[j], part[i]);
+            part.iter_mut().filter(|of| **of == lost).for_each(|of| *of = kept);
+        }
+        part.iter().all(|of| *of == part[0])
+    };
+    subsets.map(edges).filter(connected).collect()
+}
+
+/// A partition with a tree over its clusters, in order of their first points.
+type Schema = (Vec<usize>, Vec<(usize, usize)>);
+
+/// Probabilities, not normalised, of all partitions of four points with all trees; Gaussians are integrated out by many
+/// draws from their posterior. `trees_count` says by how many trees the prior of a tree divides.
+fn exact_trees(
+    points: &Points,
+    prior: &NormalInverseWishart,
+    trees_count: impl Fn(f64) -> f64,
+    weight: impl Fn(&Gaussian, &Gaussian) -> f64,
+) -> BTreeMap<Schema, f64> {
+    const DRAWS: usize = 20_000;
+    let mut rng = stream(5, 1, "trees", 0);
+    let mut exact = BTreeMap::new();
+    for labels in partitions(4) {
+        let clusters = clusters(points, prior, &labels, &mut rng);
+        let posteriors: Vec<NormalInverseWishart> =
+            clusters.iter().map(|cluster| prior.posterior(&cluster.statistics).unwrap()).collect();
+        let trees = trees(clusters.len());
+        let mut sums = vec![0.0; trees.len()];
+        for _ in 0..DRAWS {
+            let gaussians: Vec<Gaussian> =
+                posteriors.iter().map(|posterior| posterior.draw(&mut rng)).collect();
+            for (sum, tree) in sums.iter_mut().zip(&trees) {
+                *sum += tree.iter().map(|&(i, j)| weight(&gaussians[i], &gaussians[j])).product::<f64>();
+            }
+        }
+        let mixture = log_mixture(&clusters).exp() / trees_count(clusters.len() as f64);
+        for (tree, sum) in trees.into_iter().zip(sums) {
+            exact.insert((labels.clone(), tree), mixture * sum / DRAWS as f64);
+        }
+    }
+    exact
+}
+
+#[test]
+fn the_chain_visits_every_partition_with_every_tree_as_often_as_the_posterior_says() {
+    let (points, prior) = line(&[-3.0, -1.2, 1.0, 3.1]);
+    let joint = |s: &Gaussian, c: &Gaussian| (-collapsed_cost(s, c).unwrap()).exp();
+    let one_sided = |s: &Gaussian, c: &Gaussian| s.log_density(c.mean().as_slice()).exp();
+    let cayley = |count: f64| count.powf(count - 2.0);
+    let exact = exact_trees(&points, &prior, cayley, joint);
+    let target = target(&points, &prior, Model::DpgmmLj);
+    let p_value = |exact: &BTreeMap<Schema, f64>, mutant: Mutant| {
+        let mut rng = stream(5, 1, "trees", 1);
+        let mut chain = SplitMerge::start(&target, &[0; 4], &mut rng).unwrap();
+        let visits = (0..6_000).map(|_| {
+            (0..10).for_each(|_| mutant.sweep(&mut chain, &mut rng));
+            let labels = partition(&chain.labels);
+            let name = |k: usize| labels[chain.clusters[k].members[0]];
+            let edges = chain.edges(&mut rng).unwrap();
+            let pair = |edge: &Edge| {
+                let (i, j) = (name(edge.child), name(edge.parent));
+                (i.max(j), i.min(j))
+            };
+            let mut tree: Vec<(usize, usize)> = edges.iter().map(pair).collect();
+            // In the order of `trees`.
+            tree.sort_unstable();
+            (labels, tree)
+        });
+        fit(exact, visits.collect::<Vec<_>>().into_iter())
+    };
+    assert!(p_value(&exact, Mutant::None) > ALPHA, "{}", p_value(&exact, Mutant::None));
+    assert!(p_value(&exact, Mutant::NoJoints) < ALPHA);
+    // Other targets: without the prior of trees, and with the weight of a parent whose covariance is forgotten.
+    assert!(p_value(&exact_trees(&points, &prior, |_| 1.0, joint), Mutant::None) < ALPHA);
+    assert!(p_value(&exact_trees(&points, &prior, cayley, one_sided), Mutant::None) < ALPHA);
+}
+
+mod joint_distribution;

@@ -1,0 +1,66 @@
+//! Hold the state of a chain of the split–merge sampler: a partition of the points, and a Gaussian for each cluster.
+
+use rand::Rng;
+
+use crate::stages::mixture::{Gaussian, NormalInverseWishart, Points, Rounding, SufficientStatistics};
+use crate::stages::schema::joints::collapsed_cost;
+use crate::stages::schema::settings::Model;
+use crate::stages::schema::weighted_trees::WeightedGraph;
+
+/// A cluster of the partition.
+#[derive(Debug, Clone)]
+pub struct Cluster {
+    /// Its points, rising.
+    pub members: Vec<usize>,
+    /// Their sufficient statistics.
+    pub statistics: SufficientStatistics,
+    /// log m(X): the marginal likelihood of its points.
+    pub log_marginal: f64,
+    /// (μ, Σ).
+    pub gaussian: Gaussian,
+}
+
+impl Cluster {
+    /// A cluster of these points, its Gaussian drawn from their posterior.
+    ///
+    /// # Errors
+    /// [`Rounding`].
+    pub fn draw(
+        points: &Points,
+        prior: &NormalInverseWishart,
+        members: Vec<usize>,
+        rng: &mut impl Rng,
+    ) -> Result<Self, Rounding> {
+        let statistics = SufficientStatistics::of(points, &members);
+        let gaussian = prior.posterior(&statistics)?.draw(rng);
+        Ok(Self { log_marginal: prior.log_marginal(&statistics)?, members, statistics, gaussian })
+    }
+
+    /// Number of its points.
+    pub fn count(&self) -> f64 {
+        self.members.len() as f64
+    }
+}
+
+/// The weights of all trees over some clusters: N(μ_s; μ_c, Σ_s + Σ_c) for each edge, joints integrated out.
+///
+/// # Errors
+/// [`Rounding`].
+pub fn graph(clusters: &[&Cluster]) -> Result<WeightedGraph, Rounding> {
+    WeightedGraph::new(clusters.len(), |i, j| {
+        Ok(-collapsed_cost(&clusters[i].gaussian, &clusters[j].gaussian)?)
+    })
+}
+
+/// log of the mean over all trees of ∏ N(μ_s; μ_c, Σ_s + Σ_c): the factor of the latent joints under a uniform prior over
+/// the K^(K−2) trees of K clusters. 0 without joints.
+///
+/// # Errors
+/// [`Rounding`].
+pub fn log_joints(model: Model, clusters: &[&Cluster]) -> Result<f64, Rounding> {
+    if model == Model::Dpgmm || clusters.len() < 2 {
+        return Ok(0.0);
+    }
+    let count = clusters.len() as f64;
+    Ok(graph(clusters)?.log_sum() - (count - 2.0) * count.ln())
+}

@@ -1,0 +1,13 @@
+//! The split–merge sampler of the Dirichlet-process mixture, with joints and trees integrated out: an extension beside the
+//! published sampler.
+
+mod chain;
+mod clusters;
+mod collapsed;
+mod edges;
+mod halves;
+mod neighbours;
+
+pub use self::chain::{SplitMerge, Target};
+pub use self::edges::{TreePosterior, tree_given};
+pub use self::neighbours::Neighbours;
