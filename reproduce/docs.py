@@ -25,11 +25,10 @@ import tomllib
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 SHOWN = ROOT / "docs" / "shown"
 
-# The claims that the README shows: what the abstract and the discussion of the paper rest on.
+# The claims that the README shows: what the abstract of the paper rests on.
 CLAIMS = [
     ("exp1", "tree-accuracy"),
     ("exp1", "baseline-tree"),
-    ("exp1", "first-dimension"),
     ("exp2", "best-coordination"),
     ("exp2", "tree-random-movement"),
 ]
