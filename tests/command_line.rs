@@ -1,6 +1,6 @@
 //! The program as a user meets it: every stage by hand, a small experiment, and mistakes.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -278,6 +278,10 @@ fn the_split_merge_sampler_gives_a_posterior_of_parts_and_edges() {
     let tree: Vec<_> = edges.iter().filter(|row| row["in_tree"] == "true").collect();
     assert_eq!(tree.len(), 4);
     assert_eq!(header(&at("diagnostics.csv")), "quantity,r_hat,ess");
+    // Chains name their components as they like; the files do not.
+    let draws = rows(&at("trees.csv"));
+    let ends: BTreeSet<&str> = draws.iter().map(|row| row["child"].as_str()).collect();
+    assert!(ends.iter().all(|part| part.parse::<usize>().unwrap() < 5), "{ends:?}");
     // The same settings and seed give the same bytes; another sampler has no posterior.
     succeed(folder.path(), &command.replace("out out", "out again"));
     for file in ["posterior.csv", "parts.csv", "edges.csv", "diagnostics.csv", "samples.csv", "trees.csv"] {

@@ -6,6 +6,8 @@
 use std::collections::HashMap;
 
 use crate::numerics::partition::{named_by_appearance, sizes};
+use crate::stages::schema::Draw;
+use crate::stages::tree::Edge;
 
 /// Candidates for the consensus, at most: the most frequent partitions.
 const MOST_CANDIDATES: usize = 300;
@@ -56,6 +58,20 @@ pub fn consensus(draws: &[&[usize]]) -> Consensus {
     Consensus { labels: labels.clone(), certainty: agreeing, loss }
 }
 
+/// Names the clusters of a draw after the parts of the consensus that they match; those that match none get the numbers
+/// after them. Its tree goes with them.
+pub fn named_after(consensus: &[usize], draw: &mut Draw) {
+    let mut names = matched(consensus, &draw.labels);
+    let mut next = consensus.iter().max().map_or(0, |largest| largest + 1);
+    for label in &mut draw.labels {
+        *label = *names.entry(*label).or_insert_with(|| (next, next += 1).0);
+    }
+    for edge in &mut draw.tree {
+        let name = |label: usize| names.get(&label).copied().unwrap_or(label);
+        *edge = Edge { child: name(edge.child), parent: name(edge.parent) };
+    }
+}
+
 /// Variation of information of two partitions of the same items, in bits: what each says beyond the other (Meilă 2007).
 pub fn variation_of_information(first: &[usize], second: &[usize]) -> f64 {
     let both: Vec<(usize, usize)> = first.iter().copied().zip(second.iter().copied()).collect();
@@ -103,6 +119,21 @@ mod tests {
         assert_eq!(found.labels, [0, 0, 0, 1, 1, 1]);
         assert_eq!(found.certainty, [1.0, 1.0, 0.75, 1.0, 1.0, 1.0]);
         assert!(found.loss > 0.0 && found.loss < 0.5);
+    }
+
+    #[test]
+    fn a_draw_is_named_after_the_consensus_and_what_is_new_comes_after_it() {
+        let mut draw = Draw {
+            chain: 0,
+            sweep: 1,
+            labels: vec![7, 7, 7, 2, 2, 4],
+            tree: vec![Edge { child: 7, parent: 2 }, Edge { child: 4, parent: 7 }],
+            joints: Vec::new(),
+            log_posterior: None,
+        };
+        named_after(&[0, 0, 0, 1, 1, 1], &mut draw);
+        assert_eq!(draw.labels, [0, 0, 0, 1, 1, 2]);
+        assert_eq!(draw.tree, [Edge { child: 0, parent: 1 }, Edge { child: 2, parent: 0 }]);
     }
 
     #[test]

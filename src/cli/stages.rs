@@ -9,6 +9,7 @@ use clap::Args;
 use super::options::{SettingsAndSeed, SettingsFile, choice, paper, set, with_default};
 use super::output::say;
 use super::posterior;
+use crate::analysis::consensus::named_after;
 use crate::analysis::posterior::Posterior;
 use crate::analysis::statistics::{Estimate, mean, rate};
 use crate::experiments::progress::progress;
@@ -201,8 +202,9 @@ impl Map {
 /// ari,eligible,tree_correct) and trees.csv (chain,child,parent and, for dpgmm-lj, the position of the joint
 /// on the body map, x1 ... xD). With --keep all, a column `sweep` follows the chain.
 ///
-/// With --sampler split-merge, also posterior.csv (parts,probability), parts.csv (sensor,part,probability: the consensus of
-/// all draws), edges.csv (part,other,probability,in_tree: which parts are joined) and diagnostics.csv
+/// With --sampler split-merge, components have the numbers of the parts of the consensus of all draws that they match, and
+/// there are also posterior.csv (parts,probability), parts.csv (sensor,part,probability: the
+/// consensus), edges.csv (part,other,probability,in_tree: which parts are joined) and diagnostics.csv
 /// (quantity,r_hat,ess: whether the chains have mixed).
 #[derive(Args)]
 pub struct Infer {
@@ -254,9 +256,15 @@ impl Infer {
         let truth = self.labels.as_ref().zip(self.tree.as_ref());
         let truth = truth.map(|(labels, tree)| tables::read_truth(labels, tree, map.points())).transpose()?;
         let bar = progress(schema.chains as u64, "infer".to_owned());
-        let draws = infer(&map, self.model, schema, experiment.seed, 1, &|| bar.inc(1))
+        let mut draws = infer(&map, self.model, schema, experiment.seed, 1, &|| bar.inc(1))
             .with_context(|| input.display().to_string())?;
         bar.finish_and_clear();
+        let posterior = (schema.sampler == Sampler::SplitMerge)
+            .then(|| Posterior::of(&map, self.model, &draws, schema, experiment.seed, 1))
+            .transpose()?;
+        if let Some(posterior) = &posterior {
+            draws.iter_mut().for_each(|draw| named_after(&posterior.consensus.labels, draw));
+        }
         let scores: Option<Vec<Score>> = truth
             .as_ref()
             .map(|truth| draws.iter().map(|draw| score(draw, truth, evaluate.eligible_ari)).collect());
@@ -264,10 +272,9 @@ impl Infer {
         tables::write_draws(&out.join("samples.csv"), &draws, schema.keep, scores.as_deref())?;
         tables::write_trees(&out.join("trees.csv"), &draws, schema.keep)?;
         print_run(self.model, &map, draws.len(), &settings, out)?;
-        if schema.sampler == Sampler::SplitMerge {
-            let posterior = Posterior::of(&map, self.model, &draws, schema, experiment.seed, 1)?;
-            posterior::write(out, &posterior)?;
-            posterior::print(&posterior, truth.as_ref(), evaluate.eligible_ari)?;
+        if let Some(posterior) = &posterior {
+            posterior::write(out, posterior)?;
+            posterior::print(posterior, truth.as_ref(), evaluate.eligible_ari)?;
         } else {
             print_draws(&draws, scores.as_deref())?;
         }
