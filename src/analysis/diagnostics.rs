@@ -2,6 +2,7 @@
 //! Carpenter and Bürkner 2021, "Rank-normalization, folding, and localization").
 
 use statrs::distribution::{ContinuousCDF, Normal};
+use statrs::statistics::{Data, Median};
 
 /// Up to this R̂, chains count as mixed (Vehtari et al., section 4).
 pub const LARGEST_R_HAT: f64 = 1.01;
@@ -32,8 +33,7 @@ pub fn mixing(chains: &[Vec<f64>]) -> Mixing {
         return Mixing { r_hat: Some(1.0), ess: Some((chains.len() * length) as f64) };
     }
     let ranks = rank_normalised(&halves);
-    let all: Vec<f64> = halves.iter().flatten().copied().collect();
-    let median = median(&all);
+    let median = Data::new(halves.concat()).median();
     let folded: Vec<Vec<f64>> =
         halves.iter().map(|chain| chain.iter().map(|x| (x - median).abs()).collect()).collect();
     let r_hat = r_hat(&ranks).max(r_hat(&rank_normalised(&folded)));
@@ -68,13 +68,6 @@ fn rank_normalised(chains: &[Vec<f64>]) -> Vec<Vec<f64>> {
         start = end;
     }
     scores
-}
-
-fn median(values: &[f64]) -> f64 {
-    let mut sorted = values.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    let middle = sorted.len() / 2;
-    if sorted.len() % 2 == 1 { sorted[middle] } else { (sorted[middle - 1] + sorted[middle]) / 2.0 }
 }
 
 fn mean(values: &[f64]) -> f64 {

@@ -146,11 +146,9 @@ impl<'a> SplitMerge<'a> {
         care: Care,
         rng: &mut impl Rng,
     ) -> Result<(), Rounding> {
-        let Target { points, prior, .. } = *self.target;
         let members = self.members_of(pair);
-        let halves = Halves::new(points, prior, &members, ends, care)?;
-        let log_probability = halves.log_probability(|i| self.labels[i] == pair[0]);
-        let whole = [Cluster::draw(points, prior, members, rng)?];
+        let (_, log_probability) = self.as_split(&members, pair[0], ends, care)?;
+        let whole = [Cluster::draw(self.target.points, self.target.prior, members, rng)?];
         let gain = self.gain(&pair, &whole)? + self.first_point(&pair, &whole);
         if accepted(gain + log_probability, rng) {
             let [whole] = whole;
@@ -169,8 +167,7 @@ impl<'a> SplitMerge<'a> {
         rng: &mut impl Rng,
     ) -> Result<(), Rounding> {
         let Target { points, prior, .. } = *self.target;
-        let halves = Halves::new(points, prior, &self.members_of(pair), ends, care)?;
-        let before = halves.log_probability(|i| self.labels[i] == pair[0]);
+        let (halves, before) = self.as_split(&self.members_of(pair), pair[0], ends, care)?;
         let ([first, second], after) = halves.draw(rng);
         if first == self.clusters[pair[0]].members {
             return Ok(());
@@ -184,6 +181,20 @@ impl<'a> SplitMerge<'a> {
             self.number();
         }
         Ok(())
+    }
+
+    /// How the points of two clusters may be split, with the logarithm of the probability of the split that they are, of which
+    /// the cluster `first` is the first side.
+    fn as_split(
+        &self,
+        members: &[usize],
+        first: usize,
+        ends: [usize; 2],
+        care: Care,
+    ) -> Result<(Halves, f64), Rounding> {
+        let halves = Halves::new(self.target.points, self.target.prior, members, ends, care)?;
+        let log_probability = halves.log_probability(|i| self.labels[i] == first);
+        Ok((halves, log_probability))
     }
 
     /// Log ratio of the probability that the first point is drawn after a move, to that before: 1 / (K n) with K clusters and n

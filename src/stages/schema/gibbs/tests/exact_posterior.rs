@@ -1,6 +1,7 @@
 //! Test how often a chain visits each partition of five points, against the exact posterior.
 
 use super::*;
+use crate::numerics::partition::named_by_appearance;
 
 const POINTS: [f64; 5] = [-2.0, -1.6, 0.1, 1.9, 2.3];
 const COMPONENTS: usize = 3;
@@ -42,20 +43,6 @@ fn all_labellings() -> Vec<Vec<usize>> {
         .collect()
 }
 
-/// The partition behind a labelling: labels renamed in order of appearance.
-fn partition(labels: &[usize]) -> Vec<usize> {
-    let mut names = Vec::new();
-    labels
-        .iter()
-        .map(|label| {
-            names.iter().position(|name| name == label).unwrap_or_else(|| {
-                names.push(*label);
-                names.len() - 1
-            })
-        })
-        .collect()
-}
-
 #[test]
 fn the_log_posterior_of_every_labelling_agrees_with_the_chain_rule() {
     let points = Points::from_rows(1, POINTS.to_vec());
@@ -74,7 +61,7 @@ fn the_chain_visits_every_partition_as_often_as_the_posterior_says() {
     let settings = settings(COMPONENTS);
     let mut exact: BTreeMap<Vec<usize>, f64> = BTreeMap::new();
     for labels in all_labellings() {
-        *exact.entry(partition(&labels)).or_default() +=
+        *exact.entry(named_by_appearance(&labels)).or_default() +=
             log_joint(&labels, 3.0, settings.concentration).exp();
     }
     let total: f64 = exact.values().sum();
@@ -90,7 +77,7 @@ fn the_chain_visits_every_partition_as_often_as_the_posterior_says() {
             chain.update_statistics();
             chain.draw_given_labels(&mut rng).unwrap();
             if sweep % 25 == 0 {
-                *visits.get_mut(&partition(&chain.labels)).unwrap() += 1.0;
+                *visits.get_mut(&named_by_appearance(&chain.labels)).unwrap() += 1.0;
             }
         }
         let counts: Vec<f64> = visits.into_values().collect();

@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use nalgebra::{DMatrix, DVector};
 
 use super::*;
+use crate::numerics::partition::named_by_appearance;
 use crate::numerics::rng::{Stream, stream};
 use crate::numerics::testing::{ALPHA, chi_squared};
 use crate::stages::schema::joints::collapsed_cost;
@@ -67,18 +68,6 @@ fn split_without(chain: &mut SplitMerge, rng: &mut Stream, log_mistake: impl Fn(
     }
 }
 
-/// The partition behind labels: renamed in order of appearance.
-fn partition(labels: &[usize]) -> Vec<usize> {
-    let mut names = Vec::new();
-    let name = |label: &usize| {
-        names.iter().position(|name| name == label).unwrap_or_else(|| {
-            names.push(*label);
-            names.len() - 1
-        })
-    };
-    labels.iter().map(name).collect()
-}
-
 /// All partitions of n points.
 fn partitions(n: usize) -> Vec<Vec<usize>> {
     let mut all = vec![vec![0]];
@@ -131,7 +120,7 @@ fn line(points: &[f64]) -> (Points, NormalInverseWishart) {
 fn visits(chain: &mut SplitMerge, mutant: Mutant, rng: &mut Stream) -> Vec<Vec<usize>> {
     let visit = |_| {
         (0..10).for_each(|_| mutant.sweep(chain, rng));
-        partition(&chain.labels)
+        named_by_appearance(&chain.labels)
     };
     (0..6_000).map(visit).collect()
 }
@@ -220,7 +209,7 @@ fn the_chain_visits_every_partition_with_every_tree_as_often_as_the_posterior_sa
         let mut chain = SplitMerge::start(&target, &[0; 4], &mut rng).unwrap();
         let visits = (0..6_000).map(|_| {
             (0..10).for_each(|_| mutant.sweep(&mut chain, &mut rng));
-            let labels = partition(&chain.labels);
+            let labels = named_by_appearance(&chain.labels);
             let name = |k: usize| labels[chain.clusters[k].members[0]];
             let edges = chain.edges(&mut rng).unwrap();
             let pair = |edge: &Edge| {
