@@ -61,10 +61,11 @@ pub mod cli;
 /// What the tests, the fuzz targets and the examples of this repository use beside the library's own surface.
 #[doc(hidden)]
 pub mod internals {
+    pub use crate::analysis::posterior::Posterior;
     pub use crate::analysis::published::figures;
     pub use crate::analysis::statistics;
     pub use crate::experiments::verify;
-    pub use crate::report::{page, plot};
+    pub use crate::report::{markdown, page, plot};
 
     /// Steps of a sweep, which are compared with a second reading one by one.
     pub mod sampler {
@@ -72,5 +73,6 @@ pub mod internals {
         pub use crate::stages::schema::components::Components;
         pub use crate::stages::schema::joints::{cost, draw_between};
         pub use crate::stages::schema::latent_tree::{Joint, LatentTree, Update, tree};
+        pub use crate::stages::schema::weighted_trees::WeightedGraph;
     }
 }

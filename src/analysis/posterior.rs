@@ -9,6 +9,7 @@ use crate::numerics::partition::{adjusted_rand_index, sizes};
 use crate::stages::body_map::BodyMap;
 use crate::stages::evaluate::parts;
 use crate::stages::schema::{Draw, InferenceError, Model, Schema, TreePosterior, tree_over};
+use crate::stages::tree::Edge;
 
 /// What the draws say.
 #[derive(Debug, Clone, PartialEq)]
@@ -60,6 +61,19 @@ impl Posterior {
             ("agreement with the consensus", of_each(&agreement)),
         ];
         Ok(Self { parts: shares.collect(), consensus, tree, mixing })
+    }
+
+    /// The consensus and the likeliest tree over it, as a draw.
+    pub fn draw(&self) -> Draw {
+        let edges = self.tree.iter().flat_map(|tree| &tree.tree);
+        Draw {
+            chain: 0,
+            sweep: 0,
+            labels: self.consensus.labels.clone(),
+            tree: edges.map(|&(child, parent)| Edge { child, parent }).collect(),
+            joints: Vec::new(),
+            log_posterior: None,
+        }
     }
 
     /// What shows that the chains have not mixed, in words: the worst R̂ above its limit, else the smallest effective sample

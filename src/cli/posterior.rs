@@ -9,11 +9,10 @@ use super::output::say;
 use crate::analysis::diagnostics::Mixing;
 use crate::analysis::posterior::Posterior;
 use crate::files::tables::write_rows;
-use crate::numerics::partition::{adjusted_rand_index, sizes};
+use crate::numerics::partition::sizes;
 use crate::report::text_tree::text_tree;
 use crate::stages::evaluate::score;
-use crate::stages::schema::Draw;
-use crate::stages::tree::{Edge, Truth};
+use crate::stages::tree::Truth;
 
 #[derive(Serialize)]
 struct CountRow {
@@ -95,18 +94,9 @@ pub fn print(posterior: &Posterior, truth: Option<&Truth>, eligible_ari: f64) ->
         say(format!("probability of this tree, given these parts: {}", percent(tree.probability)))?;
     }
     if let Some(truth) = truth {
-        let edges = posterior.tree.iter().flat_map(|tree| &tree.tree);
-        let draw = Draw {
-            chain: 0,
-            sweep: 0,
-            labels: consensus.labels.clone(),
-            tree: edges.map(|&(child, parent)| Edge { child, parent }).collect(),
-            joints: Vec::new(),
-            log_posterior: None,
-        };
-        let right = if score(&draw, truth, eligible_ari).tree_correct { "right" } else { "wrong" };
-        let ari = adjusted_rand_index(&consensus.labels, &truth.labels);
-        say(format!("against the truth: adjusted Rand index {ari:.3}, tree {right}"))?;
+        let score = score(&posterior.draw(), truth, eligible_ari);
+        let right = if score.tree_correct { "right" } else { "wrong" };
+        say(format!("against the truth: adjusted Rand index {:.3}, tree {right}", score.ari))?;
     }
     if let Some(what) = posterior.unmixed() {
         eprintln!(

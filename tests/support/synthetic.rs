@@ -94,9 +94,9 @@ pub fn body(dims: usize, separation: f64, rng: &mut Stream) -> Body {
 
     let undirected = |a: usize, b: usize| (a.min(b), a.max(b));
     let nodes: Vec<usize> = (0..PARTS).collect();
-    let cost = |s: usize, c: usize| {
-        collapsed_cost(&components[s], &components[c]).expect("components are far from flat")
-    };
+    let moments: Vec<_> = components.iter().map(Gaussian::moments).collect();
+    let cost =
+        |s: usize, c: usize| collapsed_cost(&moments[s], &moments[c]).expect("components are far from flat");
     let mut likeliest: Vec<_> =
         prim(&nodes, cost).iter().map(|edge| undirected(edge.child, edge.parent)).collect();
     let mut drawn: Vec<_> = tree.iter().map(|&(child, parent)| undirected(child, parent)).collect();

@@ -86,11 +86,28 @@ impl Gaussian {
         self.root().tr_mul(&self.root())
     }
 
+    /// Σ, with the border μ.
+    ///
+    /// With U = Pᵀ, Σ = P⁻¹ P⁻ᵀ is the sum of the outer products of the rows of U⁻¹, and μ = P⁻¹ (P μ) that of the rows with
+    /// P μ beside them.
+    pub fn moments(&self) -> Augmented {
+        let dims = self.rows.dims;
+        let (mut root, mut inverse) = (Augmented::zeros(dims), Augmented::zeros(dims));
+        for i in 0..dims {
+            (0..=i).for_each(|j| root.row_mut(j)[i] = self.rows.row(i)[j]);
+            inverse.row_mut(i)[i] = 1.0;
+        }
+        root.solve(&mut inverse);
+        self.rows.border().enumerate().for_each(|(i, shift)| inverse.row_mut(i)[dims] = -shift);
+        let mut moments = Augmented::zeros(dims);
+        moments.add_outer(inverse.body());
+        moments
+    }
+
     /// Σ.
     pub fn covariance(&self) -> DMatrix<f64> {
-        let identity = DMatrix::identity(self.rows.dims, self.rows.dims);
-        let inverse = self.root().solve_lower_triangular(&identity).expect("the diagonal of P is positive");
-        &inverse * inverse.transpose()
+        let (moments, dims) = (self.moments(), self.rows.dims);
+        DMatrix::from_fn(dims, dims, |i, j| moments.row(i.min(j))[i.max(j)])
     }
 
     /// Draws a point.

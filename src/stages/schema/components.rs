@@ -12,6 +12,9 @@ use crate::stages::mixture::{Gaussian, NormalInverseWishart, Rounding, Sufficien
 #[derive(Debug)]
 pub struct Components<'a> {
     prior: &'a NormalInverseWishart,
+    /// Its m₀ and Ψ₀, which every draw starts from.
+    mean: DVector<f64>,
+    scale: DMatrix<f64>,
     /// What a component without sensors is drawn from, if that is not the prior.
     empty: Option<NormalInverseWishart>,
     departures: &'a Departures,
@@ -27,7 +30,7 @@ impl<'a> Components<'a> {
             EmptyComponents::Prior => None,
             EmptyComponents::Inverse => Some(prior.with_inverse_scale().ok_or(Rounding)?),
         };
-        Ok(Self { prior, empty, departures })
+        Ok(Self { prior, mean: prior.mean(), scale: prior.scale(), empty, departures })
     }
 
     /// Draws all components.
@@ -58,7 +61,7 @@ impl<'a> Components<'a> {
                 joints.iter().for_each(|joint| data.add(joint.as_slice()));
                 self.prior.posterior(&data)
             }
-            _ => without_scatter(self.prior, sensors, &joints),
+            _ => self.without_scatter(sensors, &joints),
         })
     }
 
@@ -81,29 +84,30 @@ impl<'a> Components<'a> {
         }
         joints
     }
-}
 
-/// The posterior in which joints count and move the mean, but do not enter the scatter about it.
-///
-/// With N sensors and joints together of mean x̄, n sensors of mean x̄ₛ: Ψ = Ψ₀ + Σ (x − x̄ₛ)(x − x̄ₛ)ᵀ + n (x̄ₛ − x̄)(x̄ₛ − x̄)ᵀ
-/// + k₀ N / (k₀ + N) (x̄ − m₀)(x̄ − m₀)ᵀ, a sum of what is never negative.
-fn without_scatter(
-    prior: &NormalInverseWishart,
-    sensors: &SufficientStatistics,
-    joints: &[&DVector<f64>],
-) -> Result<NormalInverseWishart, Rounding> {
-    let (count, own, before) = (sensors.count(), sensors.mean(), prior.mean());
-    let total = count + joints.len() as f64;
-    let sum = joints.iter().fold(&own * count, |sum, joint| sum + *joint);
-    let (mean, weight) = (sum / total, prior.mean_weight());
-    let mut scale: DMatrix<f64> = prior.scale();
-    if count > 0.0 {
-        scale += sensors.scatter();
+    /// The posterior in which joints count and move the mean, but do not enter the scatter about it.
+    ///
+    /// With N sensors and joints together of mean x̄, n sensors of mean x̄ₛ: Ψ = Ψ₀ + Σ (x − x̄ₛ)(x − x̄ₛ)ᵀ + n (x̄ₛ − x̄)(x̄ₛ − x̄)ᵀ
+    /// + k₀ N / (k₀ + N) (x̄ − m₀)(x̄ − m₀)ᵀ, a sum of what is never negative.
+    fn without_scatter(
+        &self,
+        sensors: &SufficientStatistics,
+        joints: &[&DVector<f64>],
+    ) -> Result<NormalInverseWishart, Rounding> {
+        let Self { prior, mean: before, .. } = self;
+        let (count, own) = (sensors.count(), sensors.mean());
+        let total = count + joints.len() as f64;
+        let sum = joints.iter().fold(&own * count, |sum, joint| sum + *joint);
+        let (mean, weight) = (sum / total, prior.mean_weight());
+        let mut scale = self.scale.clone();
+        if count > 0.0 {
+            scale += sensors.scatter();
+        }
+        let (apart, pulled) = (own - &mean, &mean - before);
+        scale.ger(count, &apart, &apart, 1.0);
+        scale.ger(weight * total / (weight + total), &pulled, &pulled, 1.0);
+        let centre = (before * weight + mean * total) / (weight + total);
+        let freedom = prior.degrees_of_freedom + total;
+        NormalInverseWishart::new(centre, weight + total, scale, freedom).ok_or(Rounding)
     }
-    let (apart, pulled) = (own - &mean, &mean - &before);
-    scale.ger(count, &apart, &apart, 1.0);
-    scale.ger(weight * total / (weight + total), &pulled, &pulled, 1.0);
-    let centre = (before * weight + mean * total) / (weight + total);
-    let freedom = prior.degrees_of_freedom + total;
-    NormalInverseWishart::new(centre, weight + total, scale, freedom).ok_or(Rounding)
 }

@@ -150,11 +150,14 @@ impl Update<'_> {
 
 /// The tree weighed with the joints integrated out, and then a joint for each of its edges ([`EdgeWeight::Collapsed`]).
 fn collapsed(update: Update, rng: &mut impl Rng) -> Result<Vec<Joint>, InferenceError> {
-    let Update { components, .. } = update;
+    let Update { components, active, .. } = update;
     let informations = Informations::of(update);
+    let mut moments = vec![None; components.len()];
+    active.iter().for_each(|&k| moments[k] = Some(components[k].moments()));
+    let moments = |k: usize| moments[k].as_ref().expect("a tree has active components");
     let mut lost = None;
     let cost = |s: usize, c: usize| {
-        collapsed_cost(&components[s], &components[c]).unwrap_or_else(|error| {
+        collapsed_cost(moments(s), moments(c)).unwrap_or_else(|error| {
             lost = Some(error);
             f64::INFINITY
         })

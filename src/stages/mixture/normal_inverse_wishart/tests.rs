@@ -199,4 +199,6 @@ fn a_gaussian_draws_with_its_own_covariance() {
     let z = z_scores(&draws, covariance.as_slice());
     assert!(z.iter().all(|z| z.abs() < 3.9), "{z:?}");
     assert!((gaussian.precision() * covariance - DMatrix::identity(3, 3)).norm() < 1e-9);
+    let mean = DVector::from_iterator(3, gaussian.moments().border());
+    assert!((mean - gaussian.mean()).norm() < 1e-9);
 }

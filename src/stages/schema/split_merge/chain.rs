@@ -250,7 +250,7 @@ impl<'a> SplitMerge<'a> {
         let mut data: Vec<SufficientStatistics> =
             self.clusters.iter().map(|cluster| cluster.statistics.clone()).collect();
         for (i, j) in self.draw_tree(rng)? {
-            let information = |k: usize| self.clusters[k].gaussian.information();
+            let information = |k: usize| self.clusters[k].gaussian().information();
             let joint = draw_between(&information(i), &information(j), rng)?;
             data[i].add(joint.as_slice());
             data[j].add(joint.as_slice());
@@ -264,7 +264,7 @@ impl<'a> SplitMerge<'a> {
         rng: &mut impl Rng,
     ) -> Result<(), Rounding> {
         for (cluster, data) in self.clusters.iter_mut().zip(data) {
-            cluster.gaussian = self.target.prior.posterior(data)?.draw(rng);
+            cluster.take(self.target.prior.posterior(data)?.draw(rng));
         }
         Ok(())
     }
@@ -317,7 +317,8 @@ impl<'a> SplitMerge<'a> {
             .iter()
             .map(|cluster| *cluster.members.choose(rng).expect("a cluster has points"))
             .collect();
-        let gaussians: Vec<Gaussian> = self.clusters.iter().map(|cluster| cluster.gaussian.clone()).collect();
+        let gaussians: Vec<Gaussian> =
+            self.clusters.iter().map(|cluster| cluster.gaussian().clone()).collect();
         let mut labels = self.labels.clone();
         assignments::draw_labels(self.target.points, &gaussians, &log_weights, false, &mut labels, rng);
         anchors.iter().enumerate().for_each(|(k, &anchor)| labels[anchor] = k);

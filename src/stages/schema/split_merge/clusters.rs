@@ -2,7 +2,9 @@
 
 use rand::Rng;
 
-use crate::stages::mixture::{Gaussian, NormalInverseWishart, Points, Rounding, SufficientStatistics};
+use crate::stages::mixture::{
+    Augmented, Gaussian, NormalInverseWishart, Points, Rounding, SufficientStatistics,
+};
 use crate::stages::schema::joints::collapsed_cost;
 use crate::stages::schema::settings::Model;
 use crate::stages::schema::weighted_trees::WeightedGraph;
@@ -17,7 +19,9 @@ pub struct Cluster {
     /// log m(X): the marginal likelihood of its points.
     pub log_marginal: f64,
     /// (μ, Σ).
-    pub gaussian: Gaussian,
+    gaussian: Gaussian,
+    /// The same, as the weights of edges need it.
+    moments: Augmented,
 }
 
 impl Cluster {
@@ -33,7 +37,19 @@ impl Cluster {
     ) -> Result<Self, Rounding> {
         let statistics = SufficientStatistics::of(points, &members);
         let gaussian = prior.posterior(&statistics)?.draw(rng);
-        Ok(Self { log_marginal: prior.log_marginal(&statistics)?, members, statistics, gaussian })
+        let (log_marginal, moments) = (prior.log_marginal(&statistics)?, gaussian.moments());
+        Ok(Self { members, statistics, log_marginal, gaussian, moments })
+    }
+
+    /// (μ, Σ).
+    pub fn gaussian(&self) -> &Gaussian {
+        &self.gaussian
+    }
+
+    /// Takes another (μ, Σ).
+    pub fn take(&mut self, gaussian: Gaussian) {
+        self.moments = gaussian.moments();
+        self.gaussian = gaussian;
     }
 
     /// Number of its points.
@@ -48,7 +64,7 @@ impl Cluster {
 /// [`Rounding`].
 pub fn graph(clusters: &[&Cluster]) -> Result<WeightedGraph, Rounding> {
     WeightedGraph::new(clusters.len(), |i, j| {
-        Ok(-collapsed_cost(&clusters[i].gaussian, &clusters[j].gaussian)?)
+        Ok(-collapsed_cost(&clusters[i].moments, &clusters[j].moments)?)
     })
 }
 

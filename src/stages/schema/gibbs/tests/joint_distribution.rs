@@ -71,9 +71,9 @@ fn direct(prior: &NormalInverseWishart, settings: &Schema, rng: &mut Stream) -> 
         weights.iter().position(|weight| (left -= weight, left < 0.0).1).unwrap_or(COMPONENTS - 1)
     };
     let labels = (0..POINTS).map(|_| label(rng)).collect();
-    let between = |edge: &Edge| (&gaussians[edge.child], &gaussians[edge.parent]);
-    let log_mass =
-        TREE.iter().map(|edge| -joints::collapsed_cost(between(edge).0, between(edge).1).unwrap()).sum();
+    let moments: Vec<_> = gaussians.iter().map(Gaussian::moments).collect();
+    let cost = |edge: &Edge| joints::collapsed_cost(&moments[edge.child], &moments[edge.parent]).unwrap();
+    let log_mass = TREE.iter().map(|edge| -cost(edge)).sum();
     let joints =
         TREE.iter().map(|edge| Joint { edge: *edge, position: draw_joint(&gaussians, *edge, rng) }).collect();
     let log_weights = weights.iter().map(|weight| weight.ln()).collect();

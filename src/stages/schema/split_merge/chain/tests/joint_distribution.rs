@@ -24,8 +24,9 @@ impl State {
     }
 
     fn graph(&self) -> WeightedGraph {
+        let moments: Vec<_> = self.gaussians.iter().map(Gaussian::moments).collect();
         WeightedGraph::new(self.gaussians.len(), |i, j| {
-            Ok::<f64, Rounding>(-collapsed_cost(&self.gaussians[i], &self.gaussians[j])?)
+            Ok::<f64, Rounding>(-collapsed_cost(&moments[i], &moments[j])?)
         })
         .unwrap()
     }
@@ -85,11 +86,11 @@ fn sweep(
 ) -> State {
     let target = target(points, prior, Model::DpgmmLj);
     let mut own = clusters(points, prior, &state.labels, rng);
-    own.iter_mut().zip(state.gaussians).for_each(|(cluster, gaussian)| cluster.gaussian = gaussian);
+    own.iter_mut().zip(state.gaussians).for_each(|(cluster, gaussian)| cluster.take(gaussian));
     let mut chain = SplitMerge { target: &target, labels: state.labels, clusters: own };
     mutant.sweep(&mut chain, rng);
     State {
-        gaussians: chain.clusters.iter().map(|cluster| cluster.gaussian.clone()).collect(),
+        gaussians: chain.clusters.iter().map(|cluster| cluster.gaussian().clone()).collect(),
         labels: chain.labels,
     }
 }
