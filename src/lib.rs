@@ -61,6 +61,7 @@ pub mod cli;
 /// What the tests, the fuzz targets and the examples of this repository use beside the library's own surface.
 #[doc(hidden)]
 pub mod internals {
+    pub use crate::analysis::consensus::consensus;
     pub use crate::analysis::posterior::Posterior;
     pub use crate::analysis::published::figures;
     pub use crate::analysis::statistics;

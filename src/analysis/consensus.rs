@@ -9,8 +9,8 @@ use crate::numerics::partition::{named_by_appearance, sizes};
 use crate::stages::schema::Draw;
 use crate::stages::tree::Edge;
 
-/// Candidates for the consensus, at most: the most frequent partitions.
-const MOST_CANDIDATES: usize = 300;
+/// Draws that are candidates for the consensus, at most: the most frequent partitions.
+const MOST_CANDIDATES: usize = 100;
 
 /// The consensus of some partitions.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,8 +23,9 @@ pub struct Consensus {
     pub loss: f64,
 }
 
-/// The partition, among those drawn, with the least mean variation of information to all draws (Meilă 2007; Wade and
-/// Ghahramani 2018).
+/// The partition with the least mean variation of information to all draws (Meilă 2007; Wade and Ghahramani 2018), among
+/// those drawn, and those that give each sensor the part which most draws give it: where many sensors are uncertain, no
+/// draw has all of them right.
 ///
 /// # Panics
 /// If there is no partition.
@@ -42,20 +43,40 @@ pub fn consensus(draws: &[&[usize]]) -> Consensus {
         total / draws.len() as f64
     };
     let candidates = distinct.iter().take(MOST_CANDIDATES).map(|(labels, _)| (loss(labels), labels));
-    let (loss, labels) = candidates
+    let (mut least, labels) = candidates
         .reduce(|kept, next| if next.0 < kept.0 { next } else { kept })
         .expect("draws must not be empty");
-    let mut agreeing = vec![0.0; labels.len()];
-    for (other, count) in &distinct {
+    let mut labels = labels.clone();
+    loop {
+        let votes = votes(&labels, &distinct);
+        let likeliest = |votes: &Vec<usize>| {
+            (0..votes.len()).reduce(|kept, next| if votes[next] > votes[kept] { next } else { kept })
+        };
+        let by_vote: Option<Vec<usize>> = votes.iter().map(likeliest).collect();
+        let by_vote = named_by_appearance(&by_vote.expect("there is a part"));
+        let loss = loss(&by_vote);
+        if loss < least {
+            (least, labels) = (loss, by_vote);
+            continue;
+        }
+        let own = votes.iter().zip(&labels).map(|(votes, label)| votes[*label] as f64 / draws.len() as f64);
+        return Consensus { certainty: own.collect(), labels, loss: least };
+    }
+}
+
+/// Of each sensor, how many draws have it in the part that matches each part of `labels`.
+fn votes(labels: &[usize], distinct: &[(Vec<usize>, usize)]) -> Vec<Vec<usize>> {
+    let parts = labels.iter().max().map_or(0, |largest| largest + 1);
+    let mut votes = vec![vec![0; parts]; labels.len()];
+    for (other, count) in distinct {
         let names = matched(labels, other);
-        for ((sum, label), other) in agreeing.iter_mut().zip(labels).zip(other) {
-            if names.get(other) == Some(label) {
-                *sum += *count as f64;
+        for (votes, other) in votes.iter_mut().zip(other) {
+            if let Some(name) = names.get(other) {
+                votes[*name] += count;
             }
         }
     }
-    agreeing.iter_mut().for_each(|sum| *sum /= draws.len() as f64);
-    Consensus { labels: labels.clone(), certainty: agreeing, loss }
+    votes
 }
 
 /// Names the clusters of a draw after the parts of the consensus that they match; those that match none get the numbers
@@ -74,14 +95,18 @@ pub fn named_after(consensus: &[usize], draw: &mut Draw) {
 
 /// Variation of information of two partitions of the same items, in bits: what each says beyond the other (Meilă 2007).
 pub fn variation_of_information(first: &[usize], second: &[usize]) -> f64 {
-    let both: Vec<(usize, usize)> = first.iter().copied().zip(second.iter().copied()).collect();
+    let size = |labels: &[usize]| labels.iter().max().map_or(0, |largest| largest + 1);
+    let (rows, columns) = (size(first), size(second));
+    let mut both = vec![0usize; rows * columns];
+    first.iter().zip(second).for_each(|(row, column)| both[row * columns + column] += 1);
     let total = first.len() as f64;
     let entropy = |counts: &mut dyn Iterator<Item = usize>| {
-        counts.map(|count| count as f64 / total).map(|share| -share * share.log2()).sum::<f64>()
+        let shares = counts.filter(|count| *count > 0).map(|count| count as f64 / total);
+        shares.map(|share| -share * share.log2()).sum::<f64>()
     };
-    let joint = entropy(&mut sizes(&both).into_values());
-    let alone = |labels: &[usize]| entropy(&mut sizes(labels).into_values());
-    (2.0 * joint - alone(first) - alone(second)).max(0.0)
+    let of_rows = entropy(&mut both.chunks_exact(columns).map(|row| row.iter().sum()));
+    let of_columns = entropy(&mut (0..columns).map(|column| both.iter().skip(column).step_by(columns).sum()));
+    (2.0 * entropy(&mut both.iter().copied()) - of_rows - of_columns).max(0.0)
 }
 
 /// Which label of `labels` each label of `other` stands for: those that share most items first, each once.
@@ -119,6 +144,21 @@ mod tests {
         assert_eq!(found.labels, [0, 0, 0, 1, 1, 1]);
         assert_eq!(found.certainty, [1.0, 1.0, 0.75, 1.0, 1.0, 1.0]);
         assert!(found.loss > 0.0 && found.loss < 0.5);
+    }
+
+    #[test]
+    fn the_consensus_is_the_vote_on_each_sensor_where_no_draw_has_all_right() {
+        // Each draw has one sensor on the wrong part, and each another one.
+        let right = [0, 0, 0, 0, 1, 1, 1, 1];
+        let draw = |wrong: usize| {
+            let mut labels = right.to_vec();
+            labels[wrong] = 1 - labels[wrong];
+            labels
+        };
+        let draws: Vec<Vec<usize>> = (0..8).map(draw).collect();
+        let found = consensus(&draws.iter().map(Vec::as_slice).collect::<Vec<_>>());
+        assert_eq!(found.labels, right);
+        assert_eq!(found.certainty, [0.875; 8]);
     }
 
     #[test]

@@ -1,0 +1,42 @@
+//! Measure the split–merge sampler: how fast its chains mix beside the paper's, whether they find the parts of bodies that it
+//! was not calibrated on, and whether its probabilities of edges are calibrated. Run by `reproduce/mixing.sh`; the argument is
+//! the folder to write to.
+
+#[allow(dead_code, reason = "the truth is of no use here")]
+#[path = "../../tests/support/synthetic.rs"]
+mod synthetic;
+
+mod bodies;
+mod edges;
+mod picture;
+mod traces;
+
+use std::error::Error;
+use std::path::Path;
+
+use bodyschema::files::write_text;
+use bodyschema::settings::{Base, Settings};
+use bodyschema::stages::schema::Schema;
+
+/// The settings of `infer --sampler split-merge`.
+fn split_merge() -> Schema {
+    Settings::load_over(Some(Base::SPLIT_MERGE), None).expect("the repository's settings").schema
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let folder = std::env::args().nth(1).ok_or("usage: mixing FOLDER")?;
+    let folder = Path::new(&folder);
+    std::fs::create_dir_all(folder.join("figures"))?;
+    let page = [
+        "# How the split–merge sampler mixes\n".to_owned(),
+        "`bodyschema infer --sampler split-merge` ([split-merge.md](docs/split-merge.md)), measured by `reproduce/mixing.sh`. All \
+         tables are the same on every machine but for seconds, which are those of one core of the machine that wrote \
+         this page.\n"
+            .to_owned(),
+        bodies::study(folder)?,
+        traces::study(folder)?,
+        edges::study(folder)?,
+    ];
+    write_text(&folder.join("mixing.md"), &page.join("\n"))?;
+    Ok(())
+}
