@@ -1,5 +1,5 @@
-//! Measure how often bodies drawn from the generative model are recovered, against separation and dimensions, as a
-//! table and a picture. Run by `reproduce/evidence.sh`; the argument is the folder to write to.
+//! Measure how often bodies drawn from the generative model are recovered by either sampler, against separation and
+//! dimensions, as a table and a picture. Run by `reproduce/evidence.sh`; the argument is the folder to write to.
 
 #[path = "../tests/support/synthetic.rs"]
 mod synthetic;
@@ -10,10 +10,9 @@ use std::path::Path;
 use bodyschema::files::tables::write_rows;
 use bodyschema::internals::statistics::mean;
 use bodyschema::numerics::rng::stream;
-use bodyschema::settings::Settings;
+use bodyschema::settings::{Base, Settings};
 use bodyschema::stages::evaluate::score;
-use bodyschema::stages::schema::{EdgeWeight, Schema};
-use bodyschema::stages::schema::{Model, infer};
+use bodyschema::stages::schema::{EdgeWeight, Keep, Model, Schema, infer};
 use plotters::prelude::*;
 
 const BODIES: usize = 24;
@@ -24,6 +23,7 @@ const SEPARATIONS: [f64; 6] = [0.0, 1.0, 1.5, 2.0, 3.0, 4.0];
 /// not independent of each other.
 #[derive(serde::Serialize)]
 struct Row {
+    sampler: &'static str,
     dimension: usize,
     separation: f64,
     bodies: usize,
@@ -43,13 +43,22 @@ struct Row {
 /// The sampler of the paper's equations.
 fn equations() -> Schema {
     let text = include_str!("../reproduce/equations.toml");
-    Settings::paper().with(text, "reproduce/equations.toml").expect("the repository's settings").schema
+    let schema =
+        Settings::paper().with(text, "reproduce/equations.toml").expect("the repository's settings").schema;
+    Schema { chains: 8, sweeps: 300, edge_weight: EdgeWeight::Pairwise, ..schema }
 }
 
-fn condition(dimension: usize, separation: f64) -> Result<Row, Box<dyn Error>> {
-    let mut schema = equations();
-    (schema.chains, schema.sweeps) = (8, 300);
-    schema.edge_weight = EdgeWeight::Pairwise;
+/// The split–merge sampler, with the prior of the other: its own is for body maps.
+fn split_merge() -> Schema {
+    let schema =
+        Settings::load_over(Some(Base::SPLIT_MERGE), None).expect("the repository's settings").schema;
+    Schema { chains: 8, sweeps: 100, keep: Keep::Last, scale: 1.0, ..schema }
+}
+
+const SAMPLERS: [&str; 2] = ["equations", "split-merge"];
+
+fn condition(sampler: &'static str, dimension: usize, separation: f64) -> Result<Row, Box<dyn Error>> {
+    let schema = if sampler == "equations" { equations() } else { split_merge() };
     let (mut partitions, mut trees) = (Vec::new(), Vec::new());
     let mut identifiable = 0;
     for at in 0..BODIES {
@@ -71,6 +80,7 @@ fn condition(dimension: usize, separation: f64) -> Result<Row, Box<dyn Error>> {
     let (partition_low, partition_high) = partition.interval.ok_or("more than one body")?;
     let (tree_low, tree_high) = tree.interval.unzip();
     Ok(Row {
+        sampler,
         dimension,
         separation,
         bodies: BODIES,
@@ -90,10 +100,12 @@ fn main() -> Result<(), Box<dyn Error>> {
     let folder = std::env::args().nth(1).ok_or("usage: recovery FOLDER")?;
     let folder = Path::new(&folder);
     let mut rows = Vec::new();
-    for dimension in DIMENSIONS {
-        for separation in SEPARATIONS {
-            rows.push(condition(dimension, separation)?);
-            eprintln!("recovery: d = {dimension}, separation {separation} done");
+    for sampler in SAMPLERS {
+        for dimension in DIMENSIONS {
+            for separation in SEPARATIONS {
+                rows.push(condition(sampler, dimension, separation)?);
+                eprintln!("recovery: {sampler}, d = {dimension}, separation {separation} done");
+            }
         }
     }
     write_rows(&folder.join("recovery.csv"), &rows)?;
@@ -104,9 +116,9 @@ fn render(path: &Path, rows: &[Row]) -> Result<(), Box<dyn Error>> {
     // Okabe & Ito's colours, and a marker size for each, so that neither alone carries the meaning.
     let colours =
         [RGBColor(0, 114, 178), RGBColor(213, 94, 0), RGBColor(0, 158, 115), RGBColor(204, 121, 167)];
-    let area = SVGBackend::new(path, (900, 380)).into_drawing_area();
+    let area = SVGBackend::new(path, (900, 760)).into_drawing_area();
     area.fill(&WHITE)?;
-    let panels = area.split_evenly((1, 2));
+    let panels = area.split_evenly((2, 2));
     type Value = fn(&Row) -> Option<(f64, f64, f64)>;
     let shown: [(&str, Value); 2] = [
         ("draws that find the parts (ARI of at least 0.95)", |row| {
@@ -114,9 +126,10 @@ fn render(path: &Path, rows: &[Row]) -> Result<(), Box<dyn Error>> {
         }),
         ("of these, draws that find the tree", |row| Some((row.tree_rate?, row.tree_low?, row.tree_high?))),
     ];
-    for (panel, (title, value)) in panels.iter().zip(shown) {
+    let both = SAMPLERS.iter().flat_map(|sampler| shown.map(|(title, value)| (*sampler, title, value)));
+    for (panel, (sampler, title, value)) in panels.iter().zip(both) {
         let mut chart = ChartBuilder::on(panel)
-            .caption(title, ("sans-serif", 18))
+            .caption(format!("{sampler}: {title}"), ("sans-serif", 16))
             .margin(10)
             .x_label_area_size(40)
             .y_label_area_size(45)
@@ -131,7 +144,7 @@ fn render(path: &Path, rows: &[Row]) -> Result<(), Box<dyn Error>> {
         for (at, (&dimension, &colour)) in DIMENSIONS.iter().zip(&colours).enumerate() {
             let points: Vec<(f64, (f64, f64, f64))> = rows
                 .iter()
-                .filter(|row| row.dimension == dimension)
+                .filter(|row| row.sampler == sampler && row.dimension == dimension)
                 .filter_map(|row| Some((row.separation, value(row)?)))
                 .collect();
             let size = 2 + at as u32;

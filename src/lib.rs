@@ -66,6 +66,7 @@ pub mod internals {
     pub use crate::analysis::published::figures;
     pub use crate::analysis::statistics;
     pub use crate::experiments::verify;
+    pub use crate::numerics::log_sum::log_sum;
     pub use crate::report::{markdown, page, plot};
 
     /// Steps of a sweep, which are compared with a second reading one by one.

@@ -51,8 +51,9 @@ struct Pair {
     other: usize,
     /// The probability of an edge between them.
     probability: f64,
-    /// Whether the likeliest tree has it.
+    /// Whether the likeliest tree has it, and the probability of that tree.
     in_tree: bool,
+    tree_probability: f64,
     /// Whether it is there.
     there: bool,
 }
@@ -150,7 +151,8 @@ fn draw_body(dims: usize, rng: &mut Stream) -> Result<Drawn, Rounding> {
     Ok(Drawn { map: BodyMap { dims, coordinates }, labels, tree })
 }
 
-fn graph(gaussians: &[Gaussian]) -> Result<WeightedGraph, Rounding> {
+/// The weights of all trees over some Gaussians.
+pub fn graph(gaussians: &[Gaussian]) -> Result<WeightedGraph, Rounding> {
     let moments: Vec<_> = gaussians.iter().map(Gaussian::moments).collect();
     WeightedGraph::new(gaussians.len(), |i, j| Ok(-collapsed_cost(&moments[i], &moments[j])?))
 }
@@ -198,6 +200,7 @@ fn pairs(
         other,
         probability,
         in_tree: tree.tree.contains(&(part, other)),
+        tree_probability: tree.probability,
         there: edge(names[part], names[other]),
     };
     tree.edges.iter().map(pair).collect()
@@ -216,13 +219,12 @@ fn summary(dimension: usize, parts: Parts, pairs: &[&Pair]) -> String {
     let single = of_bodies(pairs, |pair| square(f64::from(u8::from(pair.in_tree)), pair));
     let difference: Vec<f64> = brier.iter().zip(&single).map(|(a, b)| a - b).collect();
     let right: Vec<f64> = single.iter().map(|score| f64::from(u8::from(*score == 0.0))).collect();
-    let expected =
-        of_bodies(pairs, |pair| if pair.in_tree { pair.probability / (PARTS - 1) as f64 } else { 0.0 });
+    let expected = of_bodies(pairs, |pair| pair.tree_probability / all);
     let cell = |values: &[f64], digits: usize| {
         let estimate = mean(values);
-        let (value, (low, high)) =
-            (estimate.value.unwrap_or(f64::NAN), estimate.interval.unwrap_or_default());
-        format!("{value:.digits$} ({low:.digits$} to {high:.digits$})")
+        let value = estimate.value.map(|value| format!("{value:.digits$}"));
+        let ends = estimate.interval.map(|(low, high)| format!(" ({low:.digits$} to {high:.digits$})"));
+        value.map_or("–".to_owned(), |value| value + &ends.unwrap_or_default())
     };
     row([
         dimension.to_string(),

@@ -5,16 +5,19 @@ use std::path::Path;
 use std::time::Instant;
 
 use bodyschema::files::tables::write_rows;
+use bodyschema::internals::log_sum;
 use bodyschema::internals::markdown::{row, rule};
 use bodyschema::numerics::rng::stream;
 use bodyschema::pipeline::{feel, map_felt};
 use bodyschema::settings::Settings;
 use bodyschema::stages::body_map::BodyMap;
 use bodyschema::stages::evaluate::{adjusted_rand_index, parts};
-use bodyschema::stages::mixture::{NormalInverseWishart, Points, SufficientStatistics};
+use bodyschema::stages::mixture::{Gaussian, NormalInverseWishart, Points, Rounding, SufficientStatistics};
 use bodyschema::stages::schema::{EdgeWeight, Keep, Model, Sampler, Schema, infer, prior};
+use rayon::prelude::*;
 use serde::Deserialize;
 
+use super::edges::graph;
 use super::picture::{self, Line, Panel};
 use super::{split_merge, synthetic};
 
@@ -127,12 +130,17 @@ fn chains(name: &'static str, map: &BodyMap) -> Result<Vec<State>, Box<dyn Error
                 chain: draw.chain,
                 sweep,
                 parts: parts(&draw.labels),
-                log_posterior: log_posterior(&points, &prior, &draw.labels),
+                log_posterior: f64::NAN,
                 at_best: false,
                 labels: draw.labels,
             }));
         }
     }
+    let compute = |state: &mut State| {
+        state.log_posterior = log_posterior(&points, &prior, &state.labels)?;
+        Ok(())
+    };
+    states.par_iter_mut().try_for_each(compute).map_err(|error: Rounding| error.to_string())?;
     let best =
         states.iter().max_by(|a, b| a.log_posterior.total_cmp(&b.log_posterior)).ok_or("there are chains")?;
     let (labels, count) = (best.labels.clone(), best.parts);
@@ -142,17 +150,34 @@ fn chains(name: &'static str, map: &BodyMap) -> Result<Vec<State>, Box<dyn Error
     Ok(states)
 }
 
-/// log p(x, z) of the Dirichlet process, up to a constant, for the labels of either sampler.
-fn log_posterior(points: &Points, prior: &NormalInverseWishart, labels: &[usize]) -> f64 {
+/// log p(x, z) of the target of docs/split-merge.md, up to a constant, for the labels of either sampler. The factor of the
+/// joints, M(μ, Σ), is averaged over draws of the Gaussians.
+fn log_posterior(points: &Points, prior: &NormalInverseWishart, labels: &[usize]) -> Result<f64, Rounding> {
+    const DRAWS: usize = 100;
+    let mut rng = stream(SEED, 1, "joints", 0);
     let concentration = split_merge().concentration;
     let size = labels.iter().max().map_or(0, |largest| largest + 1);
     let clusters = (0..size).map(|k| (0..labels.len()).filter(|&i| labels[i] == k).collect::<Vec<_>>());
-    let own = |members: Vec<usize>| {
-        let statistics = SufficientStatistics::of(points, &members);
-        let marginal = prior.log_marginal(&statistics).expect("the chain computed it, too");
-        concentration.ln() + libm::lgamma(members.len() as f64) + marginal
+    let statistics: Vec<SufficientStatistics> = clusters
+        .filter(|members| !members.is_empty())
+        .map(|members| SufficientStatistics::of(points, &members))
+        .collect();
+    let own = |statistics: &SufficientStatistics| {
+        Ok(concentration.ln() + libm::lgamma(statistics.count()) + prior.log_marginal(statistics)?)
     };
-    clusters.filter(|members| !members.is_empty()).map(own).sum()
+    let mixture: f64 = statistics.iter().map(own).sum::<Result<f64, Rounding>>()?;
+    let posteriors: Vec<NormalInverseWishart> =
+        statistics.iter().map(|statistics| prior.posterior(statistics)).collect::<Result<_, Rounding>>()?;
+    let count = posteriors.len() as f64;
+    if count < 2.0 {
+        return Ok(mixture);
+    }
+    let mut joints = || {
+        let gaussians: Vec<Gaussian> = posteriors.iter().map(|posterior| posterior.draw(&mut rng)).collect();
+        Ok(graph(&gaussians)?.log_sum() - (count - 2.0) * count.ln())
+    };
+    let joints: Vec<f64> = (0..DRAWS).map(|_| joints()).collect::<Result<_, Rounding>>()?;
+    Ok(mixture + log_sum(joints.iter().copied()) - (DRAWS as f64).ln())
 }
 
 /// Seconds for a sweep, by one chain alone that has found its parts.
@@ -230,7 +255,7 @@ fn page(maps: &[&str], states: &[State], timings: &[Timing]) -> String {
         "## Both samplers on the same maps\n".to_owned(),
         format!(
             "{CHAINS} chains of each, with the same prior, from the same starts (one part, k-means, labels at random; seed {SEED}). \
-             The best is the partition of highest log p(x, z) that any chain of either sampler had; a chain is at it with an \
+             The best is the partition of highest log p(x, z), joints and trees included, that any chain of either sampler had; a chain is at it with an \
              adjusted Rand index from {AT_BEST} and as many parts. Thin lines are chains, thick ones their means. \
              [All states](traces.csv), [seconds](traces-seconds.csv).\n"
         ),

@@ -13,7 +13,7 @@ use rand_distr::Gamma;
 
 use super::clusters::{Cluster, graph, log_joints};
 use super::collapsed::collapsed_labels;
-use super::halves::{Care, Halves};
+use super::division::{Care, Division};
 use super::neighbours::Neighbours;
 use crate::stages::mixture::{
     Gaussian, NormalInverseWishart, Points, Rounding, SufficientStatistics, assignments,
@@ -23,26 +23,54 @@ use crate::stages::schema::settings::Model;
 use crate::stages::schema::weighted_trees::WeightedGraph;
 use crate::stages::tree::Edge;
 
-/// A move over the clusters of two points.
+/// A move over the clusters of a few points, its ends.
 #[derive(Debug, Clone, Copy)]
 enum Move {
-    /// Splits their cluster, or merges both of theirs.
+    /// Splits the cluster of two points, or merges both of theirs.
     SplitOrMerge(Care),
-    /// Splits the points of both of theirs anew.
+    /// Divides the points of the clusters of two points anew.
     SplitAnew(Care),
+    /// Makes three clusters of two, or two of three: two clusters may have shared a third part between them, and no split of
+    /// one of them is likely.
+    TwoOrThree(Care),
 }
 
 /// The moves of a sweep.
-const MOVES: [Move; 8] = [
+const MOVES: [Move; 10] = [
     Move::SplitOrMerge(Care::Odds(1.0)),
     Move::SplitOrMerge(Care::Blind),
+    Move::TwoOrThree(Care::Odds(1.0)),
     Move::SplitAnew(Care::Odds(1.0)),
     Move::SplitAnew(Care::Odds(0.5)),
     Move::SplitOrMerge(Care::Odds(0.1)),
     Move::SplitOrMerge(Care::Blind),
+    Move::TwoOrThree(Care::Odds(0.3)),
     Move::SplitAnew(Care::Odds(0.3)),
     Move::SplitAnew(Care::Odds(0.5)),
 ];
+
+/// What a move does to the clusters of its ends: their points are divided anew.
+#[derive(Debug, Clone, Copy)]
+struct Regrouping<'a> {
+    /// The points that have the clusters now, each its own.
+    before: &'a [usize],
+    /// The points that have those that are proposed.
+    after: &'a [usize],
+    /// How many of the points, from the first, were drawn by drawing a cluster each, and a point of it.
+    by_cluster: usize,
+    /// What a division goes by.
+    care: Care,
+}
+
+/// What is proposed.
+struct Proposal {
+    /// Numbers of the clusters that would go.
+    old: Vec<usize>,
+    /// Those that would come.
+    new: Vec<Cluster>,
+    /// Log ratio by which it is accepted.
+    log_ratio: f64,
+}
 
 /// Clusters that a chain may have: a bound for the memory, far above what a body has.
 const MOST_CLUSTERS: usize = 256;
@@ -100,116 +128,96 @@ impl<'a> SplitMerge<'a> {
         self.draw_labels(rng)
     }
 
-    /// Draws two points, and proposes a move (Jain and Neal 2004): first a cluster and a point of it, evenly, and then another
-    /// point.
+    /// Draws the ends of a move, and proposes it (Jain and Neal 2004).
+    ///
+    /// For two ends: a cluster and a point of it, evenly, and then another point. For three: two clusters and a point of each,
+    /// evenly, and then any other point.
+    fn try_move(&mut self, proposed: Move, rng: &mut impl Rng) -> Result<(), Rounding> {
+        let Move::TwoOrThree(care) = proposed else { return self.try_two(proposed, rng) };
+        let clusters: Vec<usize> = (0..self.clusters.len()).collect();
+        let two: Vec<usize> = clusters.sample(rng, 2).copied().collect();
+        let [a, b] = two[..] else { return Ok(()) };
+        let [first, second] = [a, b].map(|k| self.point_of(k, rng));
+        let third = rng.random_range(0..self.labels.len());
+        let (two, three) = ([first, second], [first, second, third]);
+        if two.contains(&third) {
+            return Ok(());
+        }
+        let (before, after): (&[usize], &[usize]) =
+            if [a, b].contains(&self.labels[third]) { (&two, &three) } else { (&three, &two) };
+        self.regroup(Regrouping { before, after, by_cluster: 2, care }, rng)
+    }
+
+    fn try_two(&mut self, proposed: Move, rng: &mut impl Rng) -> Result<(), Rounding> {
+        let first = self.point_of(rng.random_range(0..self.clusters.len()), rng);
+        let Some(second) = self.target.neighbours.second(first, rng) else { return Ok(()) };
+        let (one, both) = ([first], [first, second]);
+        let (before, after, care): (&[usize], &[usize], Care) =
+            match (proposed, self.labels[first] == self.labels[second]) {
+                (Move::SplitOrMerge(care), true) => (&one, &both, care),
+                (Move::SplitOrMerge(care), false) => (&both, &one, care),
+                (Move::SplitAnew(care), false) => (&both, &both, care),
+                (Move::SplitAnew(_), true) | (Move::TwoOrThree(_), _) => return Ok(()),
+            };
+        self.regroup(Regrouping { before, after, by_cluster: 1, care }, rng)
+    }
+
+    /// A point of a cluster.
+    fn point_of(&self, k: usize, rng: &mut impl Rng) -> usize {
+        *self.clusters[k].members.choose(rng).expect("a cluster has points")
+    }
+
+    fn regroup(&mut self, regrouping: Regrouping, rng: &mut impl Rng) -> Result<(), Rounding> {
+        if let Some(proposal) = self.propose(regrouping, rng)?
+            && accepted(proposal.log_ratio, rng)
+        {
+            self.adopt(proposal);
+        }
+        Ok(())
+    }
+
+    /// Draws what a move proposes; `None` if it would change nothing, or make too many clusters.
     ///
     /// The Gaussians of new clusters are drawn from their posterior given the points alone, so that of the ratio of
     /// targets and proposals these remain: the marginal likelihoods of the points, the prior of the partition, the
-    /// probabilities of the splits, the factor of the joints, and the probability 1 / (K n_k) of the first point.
-    fn try_move(&mut self, proposed: Move, rng: &mut impl Rng) -> Result<(), Rounding> {
-        let cluster = self.clusters.choose(rng).expect("a chain has clusters");
-        let first = *cluster.members.choose(rng).expect("a cluster has points");
-        let Some(second) = self.target.neighbours.second(first, rng) else { return Ok(()) };
-        let ends = [first, second];
-        let pair = ends.map(|end| self.labels[end]);
-        match (proposed, pair[0] == pair[1]) {
-            (Move::SplitOrMerge(care), true) => self.split(pair[0], ends, care, rng),
-            (Move::SplitOrMerge(care), false) => self.merge(pair, ends, care, rng),
-            (Move::SplitAnew(_), true) => Ok(()),
-            (Move::SplitAnew(care), false) => self.split_anew(pair, ends, care, rng),
-        }
-    }
-
-    fn split(&mut self, at: usize, ends: [usize; 2], care: Care, rng: &mut impl Rng) -> Result<(), Rounding> {
-        if self.clusters.len() >= MOST_CLUSTERS {
-            return Ok(());
-        }
+    /// probabilities of both divisions, the factor of the joints, and the probability that the ends were drawn.
+    fn propose(&self, regrouping: Regrouping, rng: &mut impl Rng) -> Result<Option<Proposal>, Rounding> {
+        let Regrouping { before, after, by_cluster, care } = regrouping;
         let Target { points, prior, .. } = *self.target;
-        let (sides, log_probability) =
-            Halves::new(points, prior, &self.clusters[at].members, ends, care)?.draw(rng);
-        let [first, second] = sides;
-        let halves = [Cluster::draw(points, prior, first, rng)?, Cluster::draw(points, prior, second, rng)?];
-        let gain = self.gain(&[at], &halves)? + self.first_point(&[at], &halves);
-        if accepted(gain - log_probability, rng) {
-            let [first, second] = halves;
-            self.clusters[at] = first;
-            self.clusters.push(second);
-            self.number();
+        if after.len() > before.len() && self.clusters.len() >= MOST_CLUSTERS {
+            return Ok(None);
         }
-        Ok(())
-    }
-
-    fn merge(
-        &mut self,
-        pair: [usize; 2],
-        ends: [usize; 2],
-        care: Care,
-        rng: &mut impl Rng,
-    ) -> Result<(), Rounding> {
-        let members = self.members_of(pair);
-        let (_, log_probability) = self.as_split(&members, pair[0], ends, care)?;
-        let whole = [Cluster::draw(self.target.points, self.target.prior, members, rng)?];
-        let gain = self.gain(&pair, &whole)? + self.first_point(&pair, &whole);
-        if accepted(gain + log_probability, rng) {
-            let [whole] = whole;
-            self.clusters[pair[0]] = whole;
-            self.clusters.swap_remove(pair[1]);
-            self.number();
-        }
-        Ok(())
-    }
-
-    fn split_anew(
-        &mut self,
-        pair: [usize; 2],
-        ends: [usize; 2],
-        care: Care,
-        rng: &mut impl Rng,
-    ) -> Result<(), Rounding> {
-        let Target { points, prior, .. } = *self.target;
-        let (halves, before) = self.as_split(&self.members_of(pair), pair[0], ends, care)?;
-        let ([first, second], after) = halves.draw(rng);
-        if first == self.clusters[pair[0]].members {
-            return Ok(());
-        }
-        let anew = [Cluster::draw(points, prior, first, rng)?, Cluster::draw(points, prior, second, rng)?];
-        let gain = self.gain(&pair, &anew)? + self.first_point(&pair, &anew);
-        if accepted(gain + before - after, rng) {
-            for (k, cluster) in pair.into_iter().zip(anew) {
-                self.clusters[k] = cluster;
-            }
-            self.number();
-        }
-        Ok(())
-    }
-
-    /// How the points of two clusters may be split, with the logarithm of the probability of the split that they are, of which
-    /// the cluster `first` is the first side.
-    fn as_split(
-        &self,
-        members: &[usize],
-        first: usize,
-        ends: [usize; 2],
-        care: Care,
-    ) -> Result<(Halves, f64), Rounding> {
-        let halves = Halves::new(self.target.points, self.target.prior, members, ends, care)?;
-        let log_probability = halves.log_probability(|i| self.labels[i] == first);
-        Ok((halves, log_probability))
-    }
-
-    /// Log ratio of the probability that the first point is drawn after a move, to that before: 1 / (K n) with K clusters and n
-    /// points in its own, which is the first of `old` before, and the first of `new` after.
-    fn first_point(&self, old: &[usize], new: &[Cluster]) -> f64 {
-        let before = self.clusters.len() as f64;
-        let after = before + new.len() as f64 - old.len() as f64;
-        (before * self.clusters[old[0]].count()).ln() - (after * new[0].count()).ln()
-    }
-
-    /// The points of two clusters, rising.
-    fn members_of(&self, pair: [usize; 2]) -> Vec<usize> {
-        let mut members = pair.map(|k| self.clusters[k].members.as_slice()).concat();
+        let old: Vec<usize> = before.iter().map(|&end| self.labels[end]).collect();
+        let mut members: Vec<usize> = old.iter().flat_map(|&k| self.clusters[k].members.clone()).collect();
         members.sort_unstable();
-        members
+        let was = Division::new(points, prior, &members, before, care)?;
+        let side =
+            |i: usize| old.iter().position(|k| *k == self.labels[i]).expect("a point of these clusters");
+        let log_was = was.log_probability(side);
+        let is = if before == after { was } else { Division::new(points, prior, &members, after, care)? };
+        let (sides, log_is) = is.draw(rng);
+        if old.len() == sides.len()
+            && old.iter().zip(&sides).all(|(&k, side)| self.clusters[k].members == *side)
+        {
+            return Ok(None);
+        }
+        let new: Vec<Cluster> = sides
+            .into_iter()
+            .map(|members| Cluster::draw(points, prior, members, rng))
+            .collect::<Result<_, Rounding>>()?;
+        let clusters = self.clusters.len();
+        let ends_before = log_ends(clusters, old.iter().take(by_cluster).map(|&k| &self.clusters[k]));
+        let ends_after = log_ends(clusters + new.len() - old.len(), new.iter().take(by_cluster));
+        let log_ratio = self.gain(&old, &new)? + log_was - log_is + ends_after - ends_before;
+        Ok(Some(Proposal { old, new, log_ratio }))
+    }
+
+    /// Takes what is proposed.
+    fn adopt(&mut self, Proposal { mut old, new, .. }: Proposal) {
+        old.sort_unstable();
+        old.iter().rev().for_each(|&k| drop(self.clusters.swap_remove(k)));
+        self.clusters.extend(new);
+        self.number();
     }
 
     /// Log ratio of the target with the clusters `new` for those of the numbers `old`, to the target as it is, the
@@ -363,6 +371,12 @@ impl<'a> SplitMerge<'a> {
         libm::lgamma(concentration) - libm::lgamma(concentration + self.labels.len() as f64)
             + self.clusters.iter().map(own).sum::<f64>()
     }
+}
+
+/// Log probability that some clusters, of so many, are drawn one after the other, and a point of each: 1 / (K n_1) for one, and
+/// 1 / (K n_1 (K − 1) n_2) for two.
+fn log_ends<'a>(clusters: usize, drawn: impl Iterator<Item = &'a Cluster>) -> f64 {
+    drawn.enumerate().map(|(at, cluster)| -((clusters - at) as f64 * cluster.count()).ln()).sum()
 }
 
 /// Whether a proposal of this log acceptance ratio is accepted.

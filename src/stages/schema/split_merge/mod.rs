@@ -4,8 +4,8 @@
 mod chain;
 mod clusters;
 mod collapsed;
+mod division;
 mod edges;
-mod halves;
 mod neighbours;
 
 pub use self::chain::{SplitMerge, Target};

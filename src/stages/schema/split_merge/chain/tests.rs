@@ -13,6 +13,9 @@ use crate::stages::schema::joints::collapsed_cost;
 
 const CONCENTRATION: f64 = 1.5;
 
+/// Of the moves of mutants.
+const CARE: Care = Care::Odds(1.0);
+
 fn target<'a>(points: &'a Points, prior: &'a NormalInverseWishart, model: Model) -> Target<'a> {
     Target { points, prior, concentration: CONCENTRATION, model, neighbours: Neighbours::of(points) }
 }
@@ -25,8 +28,10 @@ enum Mutant {
     NoProposal,
     /// Gaussians are drawn from their points alone.
     NoJoints,
-    /// The first point of a move is taken for one drawn evenly from all.
-    NoFirstPoint,
+    /// The first end of a split is taken for one drawn evenly from all points.
+    NoEnds,
+    /// Three clusters of two are accepted as if their ends were.
+    NoEndsOfThree,
 }
 
 impl Mutant {
@@ -34,8 +39,8 @@ impl Mutant {
         chain.sweep(rng).unwrap();
         match self {
             Self::None => {}
-            Self::NoProposal => split_without(chain, rng, |log_probability| log_probability),
-            Self::NoFirstPoint => split_without(chain, rng, |_| 1.0),
+            Self::NoProposal | Self::NoEnds => self.split(chain, rng),
+            Self::NoEndsOfThree => self.three_of_two(chain, rng),
             Self::NoJoints => {
                 for cluster in &mut chain.clusters {
                     let posterior = chain.target.prior.posterior(&cluster.statistics).unwrap();
@@ -46,25 +51,47 @@ impl Mutant {
     }
 }
 
-/// A further move whose acceptance ratio is wrong by a factor.
-fn split_without(chain: &mut SplitMerge, rng: &mut Stream, log_mistake: impl Fn(f64) -> f64) {
-    let first = rng.random_range(0..chain.labels.len());
-    let second = chain.target.neighbours.second(first, rng).unwrap();
-    let at = chain.labels[first];
-    if chain.labels[second] != at {
-        return;
+impl Mutant {
+    /// A further split whose acceptance ratio is wrong.
+    fn split(self, chain: &mut SplitMerge, rng: &mut Stream) {
+        let first = rng.random_range(0..chain.labels.len());
+        let second = chain.target.neighbours.second(first, rng).unwrap();
+        if chain.labels[second] == chain.labels[first] {
+            let by_cluster = usize::from(self == Self::NoProposal);
+            self.take(
+                chain,
+                Regrouping { before: &[first], after: &[first, second], by_cluster, care: CARE },
+                rng,
+            );
+        }
     }
-    let Target { points, prior, .. } = *chain.target;
-    let members = &chain.clusters[at].members;
-    let halves = Halves::new(points, prior, members, [first, second], Care::Odds(1.0)).unwrap();
-    let (sides, log_probability) = halves.draw(rng);
-    let sides = sides.map(|members| Cluster::draw(points, prior, members, rng).unwrap());
-    let gain = chain.gain(&[at], &sides).unwrap();
-    if accepted(gain - log_probability + log_mistake(log_probability), rng) {
-        let [first, second] = sides;
-        chain.clusters[at] = first;
-        chain.clusters.push(second);
-        chain.number();
+
+    /// A further move of two clusters to three.
+    fn three_of_two(self, chain: &mut SplitMerge, rng: &mut Stream) {
+        let [first, second, third] = [0; 3].map(|_| rng.random_range(0..chain.labels.len()));
+        let [a, b, c] = [first, second, third].map(|i| chain.labels[i]);
+        if a != b && first != third && second != third && [a, b].contains(&c) {
+            let (before, after) = (&[first, second], &[first, second, third]);
+            self.take(chain, Regrouping { before, after, by_cluster: 0, care: CARE }, rng);
+        }
+    }
+
+    fn take(self, chain: &mut SplitMerge, regrouping: Regrouping, rng: &mut Stream) {
+        let Some(proposal) = chain.propose(regrouping, rng).unwrap() else { return };
+        // By way of the probability of the division itself, which a split has alone.
+        let mistake = if self == Self::NoProposal {
+            let clusters: Vec<Cluster> = chain.clusters.clone();
+            let members = &clusters[proposal.old[0]].members;
+            let Target { points, prior, .. } = *chain.target;
+            let division = Division::new(points, prior, members, regrouping.after, CARE).unwrap();
+            let side = |i: usize| usize::from(!proposal.new[0].members.contains(&i));
+            division.log_probability(side)
+        } else {
+            0.0
+        };
+        if accepted(proposal.log_ratio + mistake, rng) {
+            chain.adopt(proposal);
+        }
     }
 }
 
@@ -135,7 +162,7 @@ fn the_chain_visits_every_partition_of_six_points_as_often_as_the_posterior_says
         partitions(6).into_iter().map(|labels| (labels.clone(), mass(&labels))).collect()
     };
     let target = target(&points, &prior, Model::Dpgmm);
-    for mutant in [Mutant::None, Mutant::NoProposal, Mutant::NoFirstPoint] {
+    for mutant in [Mutant::None, Mutant::NoProposal, Mutant::NoEnds, Mutant::NoEndsOfThree] {
         let mut rng = stream(5, 1, "partitions", 1);
         let mut chain = SplitMerge::start(&target, &[0; 6], &mut rng).unwrap();
         let p_value = fit(&exact, visits(&mut chain, mutant, &mut rng).into_iter());
