@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 """Put the results of finished runs into the repository: reproduce/docs.py [RESULTS]
 
-RESULTS is the folder that holds exp1, exp2, search, sensitivity, ablation, step and multiverse (default:
+RESULTS is the folder that holds exp1, exp2, search, sensitivity, ablation, step, multiverse and mixing (default:
 results/). It updates
 
 - README.md: the table between <!-- claims --> and <!-- /claims -->, from claims.csv of both experiments;
 - docs/results.md: the tables of both experiments, from their claims.md;
 - docs/shown/: two figures, and the tables and pictures of the studies;
-- docs/sensitivity.md, ablation.md, step.md and multiverse.md: the pages of the studies;
+- docs/sensitivity.md, ablation.md, step.md, multiverse.md and mixing.md: the pages of the studies;
 - DEVIATIONS.md: the table of open settings, from paper.toml, sensitivity.toml and the search that is
   shown. It needs no run.
 
@@ -40,7 +40,7 @@ UNITS = ["kg/m^3", "N m s/rad", "N m/rad", "m", "s"]
 
 def main():
     results = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "results"
-    for step in [claims, experiment_1, experiment_2, search, sensitivity, ablation, half_step, multiverse]:
+    for step in [claims, experiment_1, experiment_2, search, sensitivity, ablation, half_step, multiverse, mixing]:
         try:
             step(results)
         except FileNotFoundError as missing:
@@ -181,6 +181,11 @@ def half_step(results):
 def multiverse(results):
     tables = ["multiverse.csv", "specifications.csv", "shares.csv", "variance.csv", "joint.csv"]
     study(results / "multiverse", "multiverse.md", tables)
+
+
+def mixing(results):
+    tables = ["bodies-chains.csv", "bodies-posterior.csv", "edges.csv", "traces.csv", "traces-seconds.csv"]
+    study(results / "mixing", "mixing.md", tables)
 
 
 def study(folder, page, tables):

@@ -30,7 +30,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let page = [
         "# How the split–merge sampler mixes\n".to_owned(),
         "`bodyschema infer --sampler split-merge` ([split-merge.md](docs/split-merge.md)), measured by `reproduce/mixing.sh`. All \
-         tables are the same on every machine but for seconds, which are those of one core of the machine that wrote \
+         tables are the same on machines of one kind but for seconds, which are those of one core of the machine that wrote \
          this page.\n"
             .to_owned(),
         bodies::study(folder)?,

@@ -9,7 +9,7 @@ use crate::numerics::partition::{named_by_appearance, sizes};
 use crate::stages::schema::Draw;
 use crate::stages::tree::Edge;
 
-/// Draws that are candidates for the consensus, at most: the most frequent partitions.
+/// Draws that are candidates for the consensus, at most: the most frequent partition, and others evenly.
 const MOST_CANDIDATES: usize = 100;
 
 /// The consensus of some partitions.
@@ -24,8 +24,8 @@ pub struct Consensus {
 }
 
 /// The partition with the least mean variation of information to all draws (Meilă 2007; Wade and Ghahramani 2018), among
-/// those drawn, and those that give each sensor the part which most draws give it: where many sensors are uncertain, no
-/// draw has all of them right.
+/// 100 of those drawn, and those that then give each sensor the part which most draws give it: where many sensors are
+/// uncertain, no draw has all of them right.
 ///
 /// # Panics
 /// If there is no partition.
@@ -42,7 +42,9 @@ pub fn consensus(draws: &[&[usize]]) -> Consensus {
             .sum();
         total / draws.len() as f64
     };
-    let candidates = distinct.iter().take(MOST_CANDIDATES).map(|(labels, _)| (loss(labels), labels));
+    // Of equally frequent ones, the first would be those that merge early sensors.
+    let stride = distinct.len().div_ceil(MOST_CANDIDATES);
+    let candidates = distinct.iter().step_by(stride).map(|(labels, _)| (loss(labels), labels));
     let (mut least, labels) = candidates
         .reduce(|kept, next| if next.0 < kept.0 { next } else { kept })
         .expect("draws must not be empty");
@@ -159,6 +161,21 @@ mod tests {
         let found = consensus(&draws.iter().map(Vec::as_slice).collect::<Vec<_>>());
         assert_eq!(found.labels, right);
         assert_eq!(found.certainty, [0.875; 8]);
+    }
+
+    #[test]
+    fn a_minority_that_comes_first_does_not_decide() {
+        // 120 draws merge the first two parts, and 480 do not; no two are alike, for each has two sensors astray.
+        let draw = |at: usize| {
+            let parts = if at < 120 { [0, 0, 1] } else { [0, 1, 2] };
+            let mut labels: Vec<usize> = (0..90).map(|i| parts[i / 30]).collect();
+            labels[at % 60 + 30] = parts[0];
+            labels[at / 60] = parts[2];
+            labels
+        };
+        let draws: Vec<Vec<usize>> = (0..600).map(draw).collect();
+        let found = consensus(&draws.iter().map(Vec::as_slice).collect::<Vec<_>>());
+        assert_eq!(found.labels, (0..90).map(|i| i / 30).collect::<Vec<_>>());
     }
 
     #[test]

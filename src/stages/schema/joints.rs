@@ -65,6 +65,7 @@ mod tests {
     use super::*;
     use crate::numerics::rng::stream;
     use crate::numerics::testing::{ALPHA, ks_one_sample};
+    use crate::stages::mixture::NormalInverseWishart;
 
     /// N(mean, deviation²) in one dimension.
     fn scalar_gaussian(mean: f64, deviation: f64) -> Gaussian {
@@ -98,5 +99,29 @@ mod tests {
         let (s, c) = (scalar_gaussian(1.0, 0.5), scalar_gaussian(-0.4, 1.2));
         let integral = product_mass(&s, &c, 10.0);
         assert!((collapsed_cost(&s.moments(), &c.moments()).unwrap() + integral.ln()).abs() < 1e-9);
+    }
+
+    #[test]
+    fn the_collapsed_cost_agrees_with_the_density_in_more_dimensions() {
+        let mut rng = stream(1, 1, "collapsed", 0);
+        for dims in [3, 9, 14] {
+            let prior = NormalInverseWishart::new(
+                DVector::zeros(dims),
+                0.5,
+                DMatrix::identity(dims, dims),
+                dims as f64 + 2.0,
+            );
+            let [s, c] = [0; 2].map(|_| prior.as_ref().unwrap().draw(&mut rng));
+            let covariance: DMatrix<f64> =
+                [&s, &c].map(|gaussian| gaussian.precision().cholesky().unwrap().inverse()).iter().sum();
+            let offset = s.mean() - c.mean();
+            let square = offset.dot(&(covariance.clone().cholesky().unwrap().inverse() * &offset));
+            let expected = 0.5 * (square + covariance.determinant().ln() + dims as f64 * (2.0 * PI).ln());
+            let found = collapsed_cost(&s.moments(), &c.moments()).unwrap();
+            assert!(
+                (found - expected).abs() < 1e-9 * expected.abs().max(1.0),
+                "d = {dims}: {found}, {expected}"
+            );
+        }
     }
 }

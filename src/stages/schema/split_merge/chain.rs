@@ -1,4 +1,4 @@
-//! Run the split–merge sampler: moves that split a cluster or merge two, and Gibbs sweeps between them.
+//! Run the split–merge sampler: moves that divide the points of one to three clusters anew, and Gibbs sweeps between them.
 //!
 //! Its target, with π and the joints q integrated out, is
 //!
@@ -8,6 +8,7 @@
 //! clusters. Without joints (DPGMM) the last factor is missing. See `docs/split-merge.md`.
 
 use rand::seq::IndexedRandom;
+use rand::seq::index::sample_array;
 use rand::{Rng, RngExt};
 use rand_distr::Gamma;
 
@@ -50,26 +51,28 @@ const MOVES: [Move; 10] = [
 ];
 
 /// What a move does to the clusters of its ends: their points are divided anew.
-#[derive(Debug, Clone, Copy)]
-struct Regrouping<'a> {
+#[derive(Debug, Clone)]
+struct Regrouping {
     /// The points that have the clusters now, each its own.
-    before: &'a [usize],
+    before: Vec<usize>,
     /// The points that have those that are proposed.
-    after: &'a [usize],
+    after: Vec<usize>,
     /// How many of the points, from the first, were drawn by drawing a cluster each, and a point of it.
     by_cluster: usize,
     /// What a division goes by.
     care: Care,
 }
 
-/// What is proposed.
+/// What is proposed. It is accepted by the product of two ratios.
 struct Proposal {
     /// Numbers of the clusters that would go.
     old: Vec<usize>,
     /// Those that would come.
     new: Vec<Cluster>,
-    /// Log ratio by which it is accepted.
+    /// Log ratio of the targets, and of the probabilities that the ends are drawn.
     log_ratio: f64,
+    /// Log ratio of the probabilities of both divisions.
+    log_divisions: f64,
 }
 
 /// Clusters that a chain may have: a bound for the memory, far above what a body has.
@@ -116,7 +119,7 @@ impl<'a> SplitMerge<'a> {
         Ok(chain)
     }
 
-    /// Runs one sweep: some split–merge moves, then the Gaussians, then the labels.
+    /// Runs one sweep: ten moves, then the tree, its joints, some labels and the Gaussians, then all labels.
     ///
     /// # Errors
     /// As for [`Self::start`].
@@ -129,37 +132,48 @@ impl<'a> SplitMerge<'a> {
     }
 
     /// Draws the ends of a move, and proposes it (Jain and Neal 2004).
-    ///
-    /// For two ends: a cluster and a point of it, evenly, and then another point. For three: two clusters and a point of each,
-    /// evenly, and then any other point.
     fn try_move(&mut self, proposed: Move, rng: &mut impl Rng) -> Result<(), Rounding> {
-        let Move::TwoOrThree(care) = proposed else { return self.try_two(proposed, rng) };
-        let clusters: Vec<usize> = (0..self.clusters.len()).collect();
-        let two: Vec<usize> = clusters.sample(rng, 2).copied().collect();
-        let [a, b] = two[..] else { return Ok(()) };
-        let [first, second] = [a, b].map(|k| self.point_of(k, rng));
-        let third = rng.random_range(0..self.labels.len());
-        let (two, three) = ([first, second], [first, second, third]);
-        if two.contains(&third) {
-            return Ok(());
+        if let Some(regrouping) = self.draw_ends(proposed, rng)
+            && let Some(proposal) = self.propose(&regrouping, rng)?
+            && accepted(proposal.log_ratio + proposal.log_divisions, rng)
+        {
+            self.adopt(proposal);
         }
-        let (before, after): (&[usize], &[usize]) =
-            if [a, b].contains(&self.labels[third]) { (&two, &three) } else { (&three, &two) };
-        self.regroup(Regrouping { before, after, by_cluster: 2, care }, rng)
+        Ok(())
     }
 
-    fn try_two(&mut self, proposed: Move, rng: &mut impl Rng) -> Result<(), Rounding> {
-        let first = self.point_of(rng.random_range(0..self.clusters.len()), rng);
-        let Some(second) = self.target.neighbours.second(first, rng) else { return Ok(()) };
-        let (one, both) = ([first], [first, second]);
-        let (before, after, care): (&[usize], &[usize], Care) =
-            match (proposed, self.labels[first] == self.labels[second]) {
-                (Move::SplitOrMerge(care), true) => (&one, &both, care),
-                (Move::SplitOrMerge(care), false) => (&both, &one, care),
-                (Move::SplitAnew(care), false) => (&both, &both, care),
-                (Move::SplitAnew(_), true) | (Move::TwoOrThree(_), _) => return Ok(()),
-            };
-        self.regroup(Regrouping { before, after, by_cluster: 1, care }, rng)
+    /// Draws the ends of a move; `None` if they have no clusters that it could change.
+    ///
+    /// For two ends: a cluster and a point of it, evenly, and then another point. For three: two clusters and a point of each,
+    /// evenly, and then any third point.
+    fn draw_ends(&self, proposed: Move, rng: &mut impl Rng) -> Option<Regrouping> {
+        match proposed {
+            Move::SplitOrMerge(care) | Move::SplitAnew(care) => {
+                let first = self.point_of(rng.random_range(0..self.clusters.len()), rng);
+                let second = self.target.neighbours.second(first, rng)?;
+                let (one, both) = (vec![first], vec![first, second]);
+                let together = self.labels[first] == self.labels[second];
+                let (before, after) = match (proposed, together) {
+                    (Move::SplitAnew(_), true) => return None,
+                    (Move::SplitAnew(_), false) => (both.clone(), both),
+                    (_, true) => (one, both),
+                    (_, false) => (both, one),
+                };
+                Some(Regrouping { before, after, by_cluster: 1, care })
+            }
+            Move::TwoOrThree(care) => {
+                let clusters: [usize; 2] = sample_array(rng, self.clusters.len())?;
+                let two = clusters.map(|k| self.point_of(k, rng));
+                let third = rng.random_range(0..self.labels.len());
+                if two.contains(&third) {
+                    return None;
+                }
+                let (two, three) = (two.to_vec(), [two.as_slice(), &[third]].concat());
+                let within = clusters.contains(&self.labels[third]);
+                let (before, after) = if within { (two, three) } else { (three, two) };
+                Some(Regrouping { before, after, by_cluster: 2, care })
+            }
+        }
     }
 
     /// A point of a cluster.
@@ -167,21 +181,12 @@ impl<'a> SplitMerge<'a> {
         *self.clusters[k].members.choose(rng).expect("a cluster has points")
     }
 
-    fn regroup(&mut self, regrouping: Regrouping, rng: &mut impl Rng) -> Result<(), Rounding> {
-        if let Some(proposal) = self.propose(regrouping, rng)?
-            && accepted(proposal.log_ratio, rng)
-        {
-            self.adopt(proposal);
-        }
-        Ok(())
-    }
-
     /// Draws what a move proposes; `None` if it would change nothing, or make too many clusters.
     ///
     /// The Gaussians of new clusters are drawn from their posterior given the points alone, so that of the ratio of
     /// targets and proposals these remain: the marginal likelihoods of the points, the prior of the partition, the
     /// probabilities of both divisions, the factor of the joints, and the probability that the ends were drawn.
-    fn propose(&self, regrouping: Regrouping, rng: &mut impl Rng) -> Result<Option<Proposal>, Rounding> {
+    fn propose(&self, regrouping: &Regrouping, rng: &mut impl Rng) -> Result<Option<Proposal>, Rounding> {
         let Regrouping { before, after, by_cluster, care } = regrouping;
         let Target { points, prior, .. } = *self.target;
         if after.len() > before.len() && self.clusters.len() >= MOST_CLUSTERS {
@@ -190,11 +195,11 @@ impl<'a> SplitMerge<'a> {
         let old: Vec<usize> = before.iter().map(|&end| self.labels[end]).collect();
         let mut members: Vec<usize> = old.iter().flat_map(|&k| self.clusters[k].members.clone()).collect();
         members.sort_unstable();
-        let was = Division::new(points, prior, &members, before, care)?;
+        let was = Division::new(points, prior, &members, before, *care)?;
         let side =
             |i: usize| old.iter().position(|k| *k == self.labels[i]).expect("a point of these clusters");
         let log_was = was.log_probability(side);
-        let is = if before == after { was } else { Division::new(points, prior, &members, after, care)? };
+        let is = if before == after { was } else { Division::new(points, prior, &members, after, *care)? };
         let (sides, log_is) = is.draw(rng);
         if old.len() == sides.len()
             && old.iter().zip(&sides).all(|(&k, side)| self.clusters[k].members == *side)
@@ -206,10 +211,10 @@ impl<'a> SplitMerge<'a> {
             .map(|members| Cluster::draw(points, prior, members, rng))
             .collect::<Result<_, Rounding>>()?;
         let clusters = self.clusters.len();
-        let ends_before = log_ends(clusters, old.iter().take(by_cluster).map(|&k| &self.clusters[k]));
-        let ends_after = log_ends(clusters + new.len() - old.len(), new.iter().take(by_cluster));
-        let log_ratio = self.gain(&old, &new)? + log_was - log_is + ends_after - ends_before;
-        Ok(Some(Proposal { old, new, log_ratio }))
+        let ends_before = log_ends(clusters, old.iter().take(*by_cluster).map(|&k| &self.clusters[k]));
+        let ends_after = log_ends(clusters + new.len() - old.len(), new.iter().take(*by_cluster));
+        let log_ratio = self.gain(&old, &new)? + ends_after - ends_before;
+        Ok(Some(Proposal { old, new, log_ratio, log_divisions: log_was - log_is }))
     }
 
     /// Takes what is proposed.

@@ -7,8 +7,9 @@ use rand::{Rng, RngExt};
 use crate::numerics::log_sum::log_sum;
 use crate::stages::mixture::{NormalInverseWishart, Points, Predictive, Rounding, SufficientStatistics};
 
-/// One point in so many is drawn in a scan.
+/// The share of points that are drawn in a scan, and how many they are at most, on average: of many points, each says less.
 const SHARE: f64 = 0.25;
+const MOST: f64 = 210.0;
 
 /// Draws z_i ∝ n_k t(x_i; points and joints of k) for some points, one after the other, and updates `data`, the statistics of
 /// each cluster's points and joints. Points that are alone in their cluster stay.
@@ -25,13 +26,14 @@ pub fn collapsed_labels(
     if data.len() < 2 {
         return Ok(());
     }
+    let share = SHARE.min(MOST / labels.len() as f64);
     let predictive = |data: &SufficientStatistics| Ok(prior.posterior(data)?.predictive());
     let mut predictives: Vec<Predictive> = data.iter().map(predictive).collect::<Result<_, Rounding>>()?;
     let mut counts: Vec<f64> = vec![0.0; data.len()];
     labels.iter().for_each(|&label| counts[label] += 1.0);
     for (i, label) in labels.iter_mut().enumerate() {
         let from = *label;
-        if rng.random::<f64>() >= SHARE || counts[from] < 2.0 {
+        if rng.random::<f64>() >= share || counts[from] < 2.0 {
             continue;
         }
         let x = points.row(i);

@@ -35,7 +35,7 @@ pub struct Division {
     others: Vec<usize>,
     /// The points that have the sides.
     ends: Vec<usize>,
-    /// Of each of the others, the logarithms of the probabilities of all sides; none if the division is blind.
+    /// Of each of the others, the logarithms of the probabilities of all sides; none if the division is blind, or has one side.
     log_shares: Option<Vec<f64>>,
 }
 
@@ -137,7 +137,7 @@ impl Division {
         if let Some(log_shares) = &self.log_shares {
             return sides.zip(log_shares.chunks_exact(size)).map(|(side, logs)| logs[side]).sum();
         }
-        // The integral of ∏ f_s^(n_s) over shares f that sum to 1: (s − 1)! ∏ n_s! / (n + s − 1)!.
+        // The integral of ∏ f_s^(n_s) over shares f that sum to 1: (S − 1)! ∏ n_s! / (n + S − 1)! for S sides.
         let mut counts = vec![0.0; size];
         sides.for_each(|side| counts[side] += 1.0);
         let sides: f64 = counts.iter().map(|count| libm::lgamma(count + 1.0)).sum();

@@ -13,9 +13,6 @@ use crate::stages::schema::joints::collapsed_cost;
 
 const CONCENTRATION: f64 = 1.5;
 
-/// Of the moves of mutants.
-const CARE: Care = Care::Odds(1.0);
-
 fn target<'a>(points: &'a Points, prior: &'a NormalInverseWishart, model: Model) -> Target<'a> {
     Target { points, prior, concentration: CONCENTRATION, model, neighbours: Neighbours::of(points) }
 }
@@ -24,14 +21,18 @@ fn target<'a>(points: &'a Points, prior: &'a NormalInverseWishart, model: Model)
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Mutant {
     None,
-    /// Splits are accepted without the probability of the proposal.
-    NoProposal,
+    /// A further split or merge, without a mistake.
+    Further,
+    /// One that is accepted without the probabilities of the divisions.
+    NoDivisions,
+    /// One whose first end is taken for one drawn evenly from all points.
+    NoEnds,
+    /// A further move between two and three clusters, without a mistake.
+    FurtherOfThree,
+    /// One whose ends are taken for points drawn evenly from all.
+    NoEndsOfThree,
     /// Gaussians are drawn from their points alone.
     NoJoints,
-    /// The first end of a split is taken for one drawn evenly from all points.
-    NoEnds,
-    /// Three clusters of two are accepted as if their ends were.
-    NoEndsOfThree,
 }
 
 impl Mutant {
@@ -39,8 +40,12 @@ impl Mutant {
         chain.sweep(rng).unwrap();
         match self {
             Self::None => {}
-            Self::NoProposal | Self::NoEnds => self.split(chain, rng),
-            Self::NoEndsOfThree => self.three_of_two(chain, rng),
+            Self::Further | Self::NoDivisions | Self::NoEnds => {
+                (0..4).for_each(|_| self.step(chain, Move::SplitOrMerge(Care::Odds(0.3)), rng));
+            }
+            Self::FurtherOfThree | Self::NoEndsOfThree => {
+                (0..4).for_each(|_| self.step(chain, Move::TwoOrThree(Care::Odds(0.3)), rng));
+            }
             Self::NoJoints => {
                 for cluster in &mut chain.clusters {
                     let posterior = chain.target.prior.posterior(&cluster.statistics).unwrap();
@@ -49,49 +54,23 @@ impl Mutant {
             }
         }
     }
-}
 
-impl Mutant {
-    /// A further split whose acceptance ratio is wrong.
-    fn split(self, chain: &mut SplitMerge, rng: &mut Stream) {
-        let first = rng.random_range(0..chain.labels.len());
-        let second = chain.target.neighbours.second(first, rng).unwrap();
-        if chain.labels[second] == chain.labels[first] {
-            let by_cluster = usize::from(self == Self::NoProposal);
-            self.take(
-                chain,
-                Regrouping { before: &[first], after: &[first, second], by_cluster, care: CARE },
-                rng,
-            );
+    /// A move in both directions, whose acceptance ratio may be wrong.
+    fn step(self, chain: &mut SplitMerge, proposed: Move, rng: &mut Stream) {
+        let Some(mut regrouping) = chain.draw_ends(proposed, rng) else { return };
+        if matches!(self, Self::NoEnds | Self::NoEndsOfThree) {
+            regrouping.by_cluster = 0;
         }
-    }
-
-    /// A further move of two clusters to three.
-    fn three_of_two(self, chain: &mut SplitMerge, rng: &mut Stream) {
-        let [first, second, third] = [0; 3].map(|_| rng.random_range(0..chain.labels.len()));
-        let [a, b, c] = [first, second, third].map(|i| chain.labels[i]);
-        if a != b && first != third && second != third && [a, b].contains(&c) {
-            let (before, after) = (&[first, second], &[first, second, third]);
-            self.take(chain, Regrouping { before, after, by_cluster: 0, care: CARE }, rng);
-        }
-    }
-
-    fn take(self, chain: &mut SplitMerge, regrouping: Regrouping, rng: &mut Stream) {
-        let Some(proposal) = chain.propose(regrouping, rng).unwrap() else { return };
-        // By way of the probability of the division itself, which a split has alone.
-        let mistake = if self == Self::NoProposal {
-            let clusters: Vec<Cluster> = chain.clusters.clone();
-            let members = &clusters[proposal.old[0]].members;
-            let Target { points, prior, .. } = *chain.target;
-            let division = Division::new(points, prior, members, regrouping.after, CARE).unwrap();
-            let side = |i: usize| usize::from(!proposal.new[0].members.contains(&i));
-            division.log_probability(side)
-        } else {
-            0.0
-        };
-        if accepted(proposal.log_ratio + mistake, rng) {
+        let Some(proposal) = chain.propose(&regrouping, rng).unwrap() else { return };
+        let divisions = if self == Self::NoDivisions { 0.0 } else { proposal.log_divisions };
+        if accepted(proposal.log_ratio + divisions, rng) {
             chain.adopt(proposal);
         }
+    }
+
+    /// Whether it leaves the target as it is.
+    fn is_right(self) -> bool {
+        matches!(self, Self::None | Self::Further | Self::FurtherOfThree)
     }
 }
 
@@ -162,11 +141,13 @@ fn the_chain_visits_every_partition_of_six_points_as_often_as_the_posterior_says
         partitions(6).into_iter().map(|labels| (labels.clone(), mass(&labels))).collect()
     };
     let target = target(&points, &prior, Model::Dpgmm);
-    for mutant in [Mutant::None, Mutant::NoProposal, Mutant::NoEnds, Mutant::NoEndsOfThree] {
+    let moves =
+        [Mutant::Further, Mutant::NoDivisions, Mutant::NoEnds, Mutant::FurtherOfThree, Mutant::NoEndsOfThree];
+    for mutant in moves.into_iter().chain([Mutant::None]) {
         let mut rng = stream(5, 1, "partitions", 1);
         let mut chain = SplitMerge::start(&target, &[0; 6], &mut rng).unwrap();
         let p_value = fit(&exact, visits(&mut chain, mutant, &mut rng).into_iter());
-        assert_eq!(p_value > ALPHA, mutant == Mutant::None, "{mutant:?}: {p_value}");
+        assert_eq!(p_value > ALPHA, mutant.is_right(), "{mutant:?}: {p_value}");
     }
 }
 

@@ -148,5 +148,5 @@ fn both_ways_to_draw_labels_trees_and_data_have_the_same_moments() {
     assert!(z < 4.2, "{z}");
     assert!(largest_z(Mutant::None, 10.0) > 4.2, "a sweep with another prior");
     assert!(largest_z(Mutant::NoJoints, 9.0) > 4.2);
-    assert!(largest_z(Mutant::NoProposal, 9.0) > 4.2);
+    assert!(largest_z(Mutant::NoDivisions, 9.0) > 4.2);
 }
