@@ -44,7 +44,9 @@ pub fn reliability(path: &Path, panels: &[(String, Vec<Bin>)]) -> Result<(), Box
             let ends = [bin.observed - bin.half, bin.observed + bin.half].map(|end| end.clamp(0.0, 1.0));
             chart.draw_series([PathElement::new(ends.map(|end| (bin.predicted, end)).to_vec(), BLUE)])?;
             chart.draw_series([Circle::new((bin.predicted, bin.observed), 4, BLUE.filled())])?;
-            let place = (bin.predicted + 0.02, (bin.observed - 0.03).max(0.01));
+            // Within the panel.
+            let across = if bin.predicted > 0.85 { -0.14 } else { 0.02 };
+            let place = (bin.predicted + across, (bin.observed - 0.03).max(0.03));
             chart.draw_series([Text::new(format!("n = {}", bin.pairs), place, ("sans-serif", 11))])?;
         }
     }
@@ -73,7 +75,8 @@ pub fn traces(path: &Path, rows: &[Vec<Panel>]) -> Result<(), Box<dyn Error>> {
     let columns = rows.first().map_or(1, Vec::len);
     let area = SVGBackend::new(path, (300 * columns as u32, 260 * rows.len() as u32)).into_drawing_area();
     area.fill(&WHITE)?;
-    for (area, panel) in area.split_evenly((rows.len(), columns)).iter().zip(rows.iter().flatten()) {
+    let areas = area.split_evenly((rows.len(), columns));
+    for (at, (area, panel)) in areas.iter().zip(rows.iter().flatten()).enumerate() {
         let points = || panel.lines.iter().flat_map(|line| line.points.iter());
         let ends = |values: &mut dyn Iterator<Item = f64>| {
             values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)))
@@ -107,12 +110,14 @@ pub fn traces(path: &Path, rows: &[Vec<Panel>]) -> Result<(), Box<dyn Error>> {
                     .legend(move |(x, y)| PathElement::new([(x, y), (x + 12, y)], colour.stroke_width(2)));
             }
         }
-        chart
-            .configure_series_labels()
-            .position(SeriesLabelPosition::LowerRight)
-            .background_style(WHITE.mix(0.8))
-            .label_font(("sans-serif", 11))
-            .draw()?;
+        // One legend for all, where chains start far from each other.
+        if at == 0 {
+            chart
+                .configure_series_labels()
+                .position(SeriesLabelPosition::UpperRight)
+                .label_font(("sans-serif", 11))
+                .draw()?;
+        }
     }
     area.present()?;
     Ok(())
