@@ -229,8 +229,7 @@ impl<'a> SplitMerge<'a> {
     /// densities of Gaussians under their posteriors apart.
     fn gain(&self, old: &[usize], new: &[Cluster]) -> Result<f64, Rounding> {
         let Target { concentration, model, .. } = *self.target;
-        let own =
-            |cluster: &Cluster| concentration.ln() + libm::lgamma(cluster.count()) + cluster.log_marginal;
+        let own = |cluster: &Cluster| cluster.log_mass(concentration);
         let before: Vec<&Cluster> = self.clusters.iter().collect();
         let kept = self.clusters.iter().enumerate().filter(|(k, _)| !old.contains(k));
         let after: Vec<&Cluster> = kept.map(|(_, cluster)| cluster).chain(new).collect();
@@ -371,8 +370,7 @@ impl<'a> SplitMerge<'a> {
     /// log p(x, z) of the Dirichlet-process mixture, with π and all (μ, Σ) integrated out and the joints left out.
     pub fn log_posterior(&self) -> f64 {
         let concentration = self.target.concentration;
-        let own =
-            |cluster: &Cluster| concentration.ln() + libm::lgamma(cluster.count()) + cluster.log_marginal;
+        let own = |cluster: &Cluster| cluster.log_mass(concentration);
         libm::lgamma(concentration) - libm::lgamma(concentration + self.labels.len() as f64)
             + self.clusters.iter().map(own).sum::<f64>()
     }

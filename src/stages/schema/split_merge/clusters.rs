@@ -56,6 +56,11 @@ impl Cluster {
     pub fn count(&self) -> f64 {
         self.members.len() as f64
     }
+
+    /// log (γ Γ(n) m(X)): its factor in p(x, z), the joints apart.
+    pub fn log_mass(&self, concentration: f64) -> f64 {
+        concentration.ln() + libm::lgamma(self.count()) + self.log_marginal
+    }
 }
 
 /// The weights of all trees over some clusters: N(μ_s; μ_c, Σ_s + Σ_c) for each edge, joints integrated out.
