@@ -126,6 +126,14 @@ pulp::simd_type! {
     }
 }
 
+/// Whether this processor counts the bits of eight words at once.
+pub fn counts_by_eight() -> bool {
+    #[cfg(target_arch = "x86_64")]
+    return CountsBits::try_new().is_some();
+    #[cfg(not(target_arch = "x86_64"))]
+    false
+}
+
 impl Block<'_> {
     /// Numbers of bits set in both planes, by the widest instructions of this processor.
     fn count(self) -> [[u32; BLOCK]; BLOCK] {

@@ -5,7 +5,8 @@
 
 use rayon::prelude::*;
 
-use super::bit_planes::{BitPlanes, TILE};
+use super::bit_planes::{self, BitPlanes, TILE};
+use super::changes::Changes;
 use crate::stages::quantise::Symbols;
 
 /// A symmetric matrix of distances with a zero diagonal.
@@ -27,18 +28,46 @@ impl Distances {
 /// Maximum number of sensors: their distances take 3.2 GB.
 pub const MAX_SENSORS: usize = 20_000;
 
-/// Maximum number of levels for which bit planes, (N − 1)² passes over T bits, count faster than one pass over T symbols.
-const MAX_LEVELS_FOR_PLANES: usize = 10;
+/// What finds the joint counts of two sensors. All give the same counts.
+enum Counting<'a> {
+    /// (N − 1)² passes over T bits.
+    Planes(BitPlanes),
+    /// One step for each change of a symbol.
+    Changes(Changes<'a>),
+    /// One pass over T symbols.
+    Symbols,
+}
+
+impl<'a> Counting<'a> {
+    /// That which takes the least time, by what was measured on processors of both kinds (`benches/README.md`).
+    fn fastest(symbols: &'a Symbols) -> Self {
+        // In times that a word of bit planes takes.
+        let change = if bit_planes::counts_by_eight() { 20 } else { 4 };
+        let changes = 2 * Changes::mean(symbols) * change;
+        let planes = (symbols.levels - 1).pow(2) * symbols.samples / 64;
+        let pass = symbols.samples * change * 2 / 3;
+        if planes <= changes.min(pass) {
+            Self::Planes(BitPlanes::new(symbols))
+        } else if changes <= pass {
+            Self::Changes(Changes::new(symbols))
+        } else {
+            Self::Symbols
+        }
+    }
+}
 
 /// The information metric between all pairs of sensors (equations 23 to 26).
 ///
 /// In: the symbols of M sensors at T times. Out: M × M distances in bits, 0 to 2 log₂ N, symmetric, 0 on the diagonal.
 pub fn information_metric(symbols: &Symbols) -> Distances {
+    by(&Counting::fastest(symbols), symbols)
+}
+
+fn by(counting: &Counting, symbols: &Symbols) -> Distances {
     let (sensors, levels) = (symbols.sensors(), symbols.levels);
-    let planes = (levels <= MAX_LEVELS_FOR_PLANES).then(|| BitPlanes::new(symbols));
-    let marginals = match &planes {
-        Some(planes) => planes.marginals(symbols),
-        None => symbols.series().map(|series| histogram(series, levels)).collect(),
+    let marginals: Vec<Vec<u32>> = match counting {
+        Counting::Planes(planes) => planes.marginals(symbols),
+        _ => symbols.series().map(|series| histogram(series, levels)).collect(),
     };
     let logarithms: Vec<f64> = (0..=symbols.samples).map(|count| libm::log2(count.max(1) as f64)).collect();
 
@@ -53,16 +82,22 @@ pub fn information_metric(symbols: &Symbols) -> Distances {
     let tiled: Vec<Vec<f64>> = tiles
         .par_iter()
         .map(|tile| {
-            let counted = planes.as_ref().map(|planes| planes.count(tile.0, tile.1));
             let mut joint = vec![0; levels * levels];
-            let metric = |(i, j)| {
-                match &counted {
-                    Some(counted) => counted.joint(i, j, &marginals, &mut joint),
-                    None => count(symbols, i, j, &mut joint),
-                }
-                metric_of_counts(&joint, &marginals[i], &marginals[j], &logarithms)
+            let mut distances = |count: &dyn Fn(usize, usize, &mut [u32])| -> Vec<f64> {
+                let metric = |(i, j)| {
+                    count(i, j, &mut joint);
+                    metric_of_counts(&joint, &marginals[i], &marginals[j], &logarithms)
+                };
+                pairs(tile).map(metric).collect()
             };
-            pairs(tile).map(metric).collect()
+            match counting {
+                Counting::Planes(planes) => {
+                    let counted = planes.count(tile.0, tile.1);
+                    distances(&|i, j, joint| counted.joint(i, j, &marginals, joint))
+                }
+                Counting::Changes(changes) => distances(&|i, j, joint| changes.joint(i, j, joint)),
+                Counting::Symbols => distances(&|i, j, joint| count(symbols, i, j, joint)),
+            }
         })
         .collect();
 
@@ -146,10 +181,16 @@ mod tests {
     }
 
     #[test]
-    fn agrees_with_the_definition_with_and_without_bit_planes() {
-        for (levels, samples) in [(2, 63), (4, 64), (5, 1000), (10, 129), (11, 500), (40, 500)] {
+    fn agrees_with_the_definition_however_it_counts() {
+        for (levels, samples) in [(2, 63), (4, 64), (5, 1000), (10, 129), (11, 500), (40, 500), (3, 1)] {
             let symbols = random_symbols(19, samples, levels);
             let distances = information_metric(&symbols);
+            let all = [
+                Counting::Planes(BitPlanes::new(&symbols)),
+                Counting::Changes(Changes::new(&symbols)),
+                Counting::Symbols,
+            ];
+            all.iter().for_each(|counting| assert_eq!(by(counting, &symbols), distances));
             for i in 0..19 {
                 assert_eq!(distances.get(i, i), 0.0);
                 for j in 0..19 {
@@ -159,6 +200,18 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn symbols_that_rarely_change_are_counted_by_their_changes() {
+        let mut symbols = random_symbols(19, 6400, 20);
+        assert!(matches!(Counting::fastest(&symbols), Counting::Symbols));
+        let slow = |(at, _): (usize, &u8)| symbols.values[at - at % 64];
+        symbols.values = symbols.values.iter().enumerate().map(slow).collect();
+        assert!(matches!(Counting::fastest(&symbols), Counting::Changes(_)));
+        symbols.levels = 2;
+        symbols.values.iter_mut().for_each(|symbol| *symbol %= 2);
+        assert!(matches!(Counting::fastest(&symbols), Counting::Planes(_)));
     }
 
     #[test]
