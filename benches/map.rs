@@ -4,7 +4,7 @@
 use std::time::Instant;
 
 use bodyschema::numerics::rng::stream;
-use bodyschema::stages::body_map::{ClassicalScaling, Descent};
+use bodyschema::stages::body_map::{ClassicalScaling, descend, random_map};
 use bodyschema::stages::distance::Distances;
 use rand::RngExt;
 use rayon::prelude::*;
@@ -49,7 +49,7 @@ fn main() {
     let mut times: Vec<f64> = (0..5)
         .map(|start| {
             let clock = Instant::now();
-            Descent::random(&distances, 14, &mut stream(1, 1, "start", start)).run(300, 0.0);
+            descend(&distances, &random_map(840, 14, &mut stream(1, 1, "start", start)), 300, 0.0);
             clock.elapsed().as_secs_f64() * 1e3
         })
         .collect();

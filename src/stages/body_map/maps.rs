@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::classical::{ClassicalScaling, MapError};
 use super::coordinates::BodyMap;
-use super::random_starts::{Descended, Descent};
+use super::random_starts::{Descended, descend, random_map};
 use super::settings::{Map, MapMethod};
 use super::smacof::{Fit, Improvement, Majorisation, smacof};
 use crate::numerics::rng::Stream;
@@ -93,14 +93,13 @@ fn best_of_random(
     settings: &Map,
     random: &(dyn Fn(usize) -> Stream + Sync),
 ) -> (BodyMap, Improvement) {
-    let descend = |start: usize| -> Descended {
-        Descent::random(distances, dims, &mut random(start)).run(settings.steps, settings.tolerance)
-    };
-    let all: Vec<Descended> = (0..settings.starts).into_par_iter().map(descend).collect();
+    let start = |start: usize| random_map(distances.sensors, dims, &mut random(start));
+    let end = |at: usize| descend(distances, &start(at), settings.steps, settings.tolerance);
+    let all: Vec<Descended> = (0..settings.starts).into_par_iter().map(end).collect();
     let least = (0..all.len()).reduce(|a, b| if all[b].stress < all[a].stress { b } else { a });
     let least = least.expect("there is a start");
     let stress = |map: BodyMap| Majorisation::new(distances, map, Fit::Metric).stress();
-    let start = stress(Descent::random(distances, dims, &mut random(least)).map());
+    let start = stress(start(least));
     let Descended { map, steps, .. } = all.into_iter().nth(least).expect("it is one of them");
     let improvement = Improvement { dimension: dims, start, stress: stress(map.clone()), steps };
     (map, improvement)

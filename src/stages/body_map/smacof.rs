@@ -15,6 +15,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::coordinates::BodyMap;
+use super::guttman::Guttman;
 use crate::stages::distance::Distances;
 
 /// The iteration ends when a step lowers raw stress by less than this share: as many steps again as are allowed would
@@ -49,18 +50,48 @@ pub struct Improvement {
 /// Improves the map `start` (n × d) until its stress hardly changes; returns the new map and its stress. The points of
 /// `start` must not all coincide.
 pub fn smacof(distances: &Distances, start: BodyMap, fit: Fit) -> (BodyMap, Improvement) {
-    let mut state = Majorisation::new(distances, start, fit);
-    let (start, mut steps) = (state.stress(), 0);
+    let begin = Majorisation::new(distances, start, fit);
+    let (dimension, start) = (begin.map.dims, begin.stress());
+    let (end, steps) = match fit {
+        Fit::Metric => metric(begin),
+        Fit::Nonmetric => nonmetric(begin),
+    };
+    let stress = end.stress();
+    (end.map, Improvement { dimension, start, stress, steps })
+}
+
+/// Whether a step is the last.
+fn is_last(before: f64, after: f64) -> bool {
+    before - after <= TOLERANCE * before
+}
+
+/// Steps that compute each pair of points once; what they lower, the next one says.
+fn metric(begin: Majorisation) -> (Majorisation, usize) {
+    let mut state = Guttman::new(begin.distances, &begin.map);
+    let (mut before, mut steps) = (state.step(), 1);
+    let mut map = state.map();
+    while steps < MAX_STEPS {
+        let after = state.step();
+        if is_last(before, after) {
+            break;
+        }
+        (before, map) = (after, state.map());
+        steps += 1;
+    }
+    (Majorisation::new(begin.distances, map, Fit::Metric), steps)
+}
+
+fn nonmetric(mut state: Majorisation) -> (Majorisation, usize) {
+    let mut steps = 0;
     while steps < MAX_STEPS {
         let before = state.raw_stress();
         state.step();
         steps += 1;
-        if before - state.raw_stress() <= TOLERANCE * before {
+        if is_last(before, state.raw_stress()) {
             break;
         }
     }
-    let improvement = Improvement { dimension: state.map.dims, start, stress: state.stress(), steps };
-    (state.map, improvement)
+    (state, steps)
 }
 
 /// A map on its way to less stress.

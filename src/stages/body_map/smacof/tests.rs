@@ -51,6 +51,25 @@ fn no_step_raises_the_stress() {
     }
 }
 
+/// With numbers of points that fill the tiles and that do not.
+#[test]
+fn steps_that_compute_each_pair_once_are_those_of_majorisation() {
+    for (n, dims) in [(5, 2), (8, 3), (40, 3), (67, 9)] {
+        let distances = city_block(n);
+        let mut rng = stream(1, 1, "start", n);
+        let start = BodyMap { dims, coordinates: (0..n * dims).map(|_| rng.random()).collect() };
+        let mut found = Guttman::new(&distances, &start);
+        let mut expected = Majorisation::new(&distances, start, Fit::Metric);
+        for _ in 0..20 {
+            let stress = expected.raw_stress();
+            assert!((found.step() / stress - 1.0).abs() < 1e-12, "{n} points");
+            expected.step();
+            let off = found.map().coordinates.into_iter().zip(&expected.map().coordinates);
+            assert!(off.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) < 1e-11, "{n} points");
+        }
+    }
+}
+
 #[test]
 fn stress_is_less_than_the_classical_map_s_and_hardly_changes_any_more() {
     let distances = city_block(40);
