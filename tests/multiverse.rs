@@ -13,7 +13,8 @@ groups = ["levels"]
 [draws]
 movements = 4
 distances = 2
-inferences = 2
+maps = 2
+inferences = 1
 [settings]
 skin = { around = 8, along = 3 }
 physics = { duration = 1000.0 }
@@ -51,6 +52,18 @@ settings = { quantise = { levels = 2 } }
 label = "four"
 why = "more"
 settings = { quantise = { levels = 4 } }
+[[factor]]
+name = "scaled"
+decides = "map"
+paper = "the distances"
+[[factor.option]]
+label = "distances"
+why = "as it says"
+settings = { map = { of = "distances" } }
+[[factor.option]]
+label = "rows"
+why = "as the code does"
+settings = { map = { of = "rows" } }
 [[factor]]
 name = "start"
 decides = "inference"

@@ -1,4 +1,5 @@
-//! Say how configurations are drawn: nested, so that many share a movement, and of these some the distances.
+//! Say how configurations are drawn: nested, so that many share a movement, of these some the distances, and of these some
+//! the body maps.
 
 use serde::Deserialize;
 
@@ -10,8 +11,15 @@ pub struct Draws {
     pub movements: usize,
     /// For each movement, draws of the factors that decide the distances.
     pub distances: usize,
-    /// For each matrix of distances, draws of all other factors: one configuration each.
+    /// For each matrix of distances, draws of the factors that decide the body maps.
+    #[serde(default = "one")]
+    pub maps: usize,
+    /// For the body maps of each, draws of all other factors: one configuration each.
     pub inferences: usize,
+}
+
+fn one() -> usize {
+    1
 }
 
 /// What a factor decides, and all that comes after it.
@@ -22,6 +30,8 @@ pub enum Decides {
     Movement,
     /// What it feels, and the distances between its sensors.
     Distances,
-    /// The body map and what is inferred from it.
+    /// The body maps.
+    Map,
+    /// What is inferred from them.
     Inference,
 }

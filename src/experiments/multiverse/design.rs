@@ -18,10 +18,11 @@ const MOST_SPECIFICATIONS: usize = 1 << 16;
 const MOST_FACTORS: usize = 1 << 8;
 
 /// Columns of specifications.csv beside those of the factors.
-pub const COLUMNS: [&str; 8] = [
+pub const COLUMNS: [&str; 9] = [
     "specification",
     "movement",
     "distances",
+    "maps",
     "resolved",
     "anchor_separation_m",
     "turn",
@@ -108,13 +109,13 @@ impl Design {
         if let Some(unknown) = design.groups.iter().find(|name| !known(name)) {
             return Err(wrong(format!("groups by `{unknown}`, which is no factor")));
         }
-        let Draws { movements, distances, inferences } = design.draws;
-        if [movements, distances, inferences].contains(&0) {
-            return Err(wrong(
-                "draws nothing: movements, distances and inferences must be positive".to_owned(),
-            ));
+        let Draws { movements, distances, maps, inferences } = design.draws;
+        let numbers = [movements, distances, maps, inferences];
+        if numbers.contains(&0) {
+            let message = "draws nothing: movements, distances, maps and inferences must be positive";
+            return Err(wrong(message.to_owned()));
         }
-        let points = movements.checked_mul(distances).and_then(|felt| felt.checked_mul(inferences));
+        let points = numbers.into_iter().try_fold(1_usize, usize::checked_mul);
         if points.is_none_or(|points| points > MOST_SPECIFICATIONS) || design.factors.len() > MOST_FACTORS {
             let message = format!(
                 "draws more than {MOST_SPECIFICATIONS} specifications, or of more than {MOST_FACTORS} factors"

@@ -19,24 +19,32 @@ pub struct Drawn {
     pub movement: usize,
     /// The matrix of distances that it shares with others, from 1.
     pub distances: usize,
+    /// The body maps that it shares with others, from 1.
+    pub maps: usize,
     /// The option of each factor of the design.
     pub options: Vec<usize>,
 }
 
 /// All specifications of a design, those that share a movement next to each other, no two alike.
 pub fn specifications(design: &Design) -> Vec<Drawn> {
-    let Draws { movements, distances, inferences } = design.draws;
+    let Draws { movements, distances, maps, inferences } = design.draws;
     let mut all: Vec<Drawn> = Vec::new();
     let mut known = HashSet::new();
     for movement in 0..movements {
         for distance in 0..distances {
-            for inference in 0..inferences {
-                let felt = movement * distances + distance;
-                let places = [movement, felt, felt * inferences + inference];
-                let options = options(design, places);
-                if known.insert((movement, options.clone())) {
-                    let number = all.len() + 1;
-                    all.push(Drawn { number, movement: movement + 1, distances: felt + 1, options });
+            let felt = movement * distances + distance;
+            for mapped in felt * maps..(felt + 1) * maps {
+                for inferred in mapped * inferences..(mapped + 1) * inferences {
+                    let options = options(design, [movement, felt, mapped, inferred]);
+                    if known.insert((movement, options.clone())) {
+                        all.push(Drawn {
+                            number: all.len() + 1,
+                            movement: movement + 1,
+                            distances: felt + 1,
+                            maps: mapped + 1,
+                            options,
+                        });
+                    }
                 }
             }
         }
@@ -44,13 +52,14 @@ pub fn specifications(design: &Design) -> Vec<Drawn> {
     all
 }
 
-/// The option of each factor, given the places in the sequences of movements, distances and inferences.
-fn options(design: &Design, places: [usize; 3]) -> Vec<usize> {
+/// The option of each factor, given the places in the sequences of movements, distances, maps and inferences.
+fn options(design: &Design, places: [usize; 4]) -> Vec<usize> {
     let option = |(dimension, factor): (usize, &Factor)| {
         let place = match factor.decides {
             Decides::Movement => places[0],
             Decides::Distances => places[1],
-            Decides::Inference => places[2],
+            Decides::Map => places[2],
+            Decides::Inference => places[3],
         };
         // The design was checked: sequences have 2^16 points and 2^8 dimensions.
         let uniform = sample(place as u32, dimension as u32, design.seed as u32);

@@ -152,6 +152,7 @@ impl<'a> Evaluation<'a> {
                 let unit = |(place, one): (usize, &&Specification)| match factor.decides {
                     Decides::Movement => one.summary.movement,
                     Decides::Distances => one.summary.distances,
+                    Decides::Map => one.summary.maps,
                     Decides::Inference => place,
                 };
                 with.iter().enumerate().map(unit).collect()

@@ -106,6 +106,7 @@ fn row_of(design: &Design, one: &Specification) -> Map<String, Value> {
         summary.number.into(),
         summary.movement.into(),
         summary.distances.into(),
+        summary.maps.into(),
         summary.resolved.into(),
         summary.anchor_separation.into(),
         summary.turn.into(),

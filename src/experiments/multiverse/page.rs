@@ -113,10 +113,10 @@ fn with_ends(share: Option<f64>, ends: Option<(f64, f64)>, open: &str, close: &s
 /// How it was made.
 fn made(evaluation: &Evaluation) -> String {
     let Design { seed, draws, settings, .. } = evaluation.design;
-    let Draws { movements, distances, inferences } = draws;
+    let Draws { movements, distances, maps, inferences } = draws;
     format!(
         "Made by `bodyschema multiverse` (revision {}, seed {seed}): {movements} movements, of each {distances} matrices of \
-         distances, of each {inferences} ways to infer, drawn evenly from all combinations of the choices below by a scrambled \
+         distances, of each {maps} kinds of body map, of each {inferences} ways to infer, drawn evenly from all combinations of the choices below by a scrambled \
          Sobol sequence; {}. Any specification can be run again by its number: its settings are in \
          specifications/NUMBER/settings.toml, and `bodyschema multiverse --only NUMBER` makes that folder. All values: \
          [multiverse.csv](multiverse.csv); what each specification is: [specifications.csv](specifications.csv).",

@@ -29,6 +29,8 @@ pub struct Summary {
     pub movement: usize,
     /// The matrix of distances that it shares with others, from 1.
     pub distances: usize,
+    /// The body maps that it shares with others, from 1.
+    pub maps: usize,
     /// Revision of the program that ran it.
     pub revision: String,
     /// Right trees and eligible draws of each body at the condition of the headline; empty where a chain keeps all its
@@ -130,6 +132,7 @@ pub fn write(
         number: drawn.number,
         movement: drawn.movement,
         distances: drawn.distances,
+        maps: drawn.maps,
         revision: env!("BODYSCHEMA_REVISION").to_owned(),
         headline: headline(settings, outcome),
         resolved: failures.is_empty() && outcome.resolution.is_resolved(),

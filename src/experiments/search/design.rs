@@ -133,14 +133,15 @@ impl Design {
         let mut all = self.start.clone();
         let mut known: HashSet<String> =
             all.iter().map(|candidate| flat(&candidate.settings).join(",")).collect();
-        let Draws { movements, distances, inferences } = self.draws;
+        let Draws { movements, distances, maps, inferences } = self.draws;
         for movement in 1..=movements {
             let moved = self.draw(Decides::Movement, &Table::new(), [0, movement]);
             for distance in 1..=distances {
                 let felt = self.draw(Decides::Distances, &moved, [movement, distance]);
-                for inference in 1..=inferences {
-                    let number = movement * distances + distance;
-                    let settings = self.draw(Decides::Inference, &felt, [number, inference]);
+                let felt_as = movement * distances + distance;
+                for inference in 1..=maps * inferences {
+                    let mapped = self.draw(Decides::Map, &felt, [felt_as, inference.div_ceil(inferences)]);
+                    let settings = self.draw(Decides::Inference, &mapped, [felt_as, inference]);
                     if known.insert(flat(&settings).join(",")) {
                         all.push(Candidate { name: format!("{movement}-{distance}-{inference}"), settings });
                     }
