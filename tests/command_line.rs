@@ -69,6 +69,15 @@ fn stages_by_hand_repeat_the_experiment() {
     let summary = run(
         "infer body-map.npy --settings small.toml --labels body/labels.csv --tree body/tree.csv --out schema",
     );
+    let told = succeed(
+        folder.path(),
+        "tree body/tactile.npy --parts body/labels.csv --labels body/labels.csv --tree body/tree.csv --out joined",
+    );
+    assert!(told.contains("adjusted Rand index 1.000, tree right"), "{told}");
+    assert_eq!(header(&folder.path().join("joined/tree.csv")), "child,parent,confidence");
+    assert_eq!(rows(&folder.path().join("joined/tree.csv")).len(), 4);
+    assert_eq!(header(&folder.path().join("joined/edges.csv")), "part,other,agreement,confidence,in_tree");
+    assert_eq!(rows(&folder.path().join("joined/edges.csv")).len(), 10);
     assert!(summary.contains("tree right among eligible draws"), "{summary}");
 
     assert_eq!(header(&at("body/labels.csv")), "sensor,part");

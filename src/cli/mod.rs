@@ -7,5 +7,6 @@ mod posterior;
 mod program;
 mod results;
 mod stages;
+mod tree;
 
 pub use self::program::main;

@@ -8,6 +8,7 @@ use clap::{Parser, Subcommand};
 use super::experiments::{Compare, Multiverse, Reproduce, Search, Sensitivity};
 use super::results::{Plot, Verify};
 use super::stages::{Distance, Infer, Map, Simulate};
+use super::tree::Tree;
 
 /// Finds out from touch alone how many parts a body has, which sensor sits on which part, and how the parts are
 /// joined: a replication of Mimura, Hagiwara, Taniguchi and Inamura (2017).
@@ -24,6 +25,7 @@ enum Command {
     Distance(Distance),
     Map(Map),
     Infer(Infer),
+    Tree(Tree),
     Reproduce(Reproduce),
     Search(Search),
     Sensitivity(Sensitivity),
@@ -40,6 +42,7 @@ impl Command {
             Self::Distance(command) => command.run(),
             Self::Map(command) => command.run(),
             Self::Infer(command) => command.run(),
+            Self::Tree(command) => command.run(),
             Self::Reproduce(command) => command.run(),
             Self::Search(command) => command.run(),
             Self::Sensitivity(command) => command.run(),

@@ -66,6 +66,16 @@ pub fn read_tactile(path: &Path) -> Result<Tactile, FileError> {
     Ok(Tactile { samples: matrix.rows, pressures: matrix.values })
 }
 
+/// Reads pressures as a robot has them, T × M, of any numeric type: of any sign, and NaN where a value is not finite or
+/// exceeds the largest float32.
+pub fn read_any_tactile(path: &Path) -> Result<Tactile, FileError> {
+    let finite = |value: f64| value.abs() <= f64::from(f32::MAX);
+    let matrix =
+        Matrix::read(path, Order::Fortran, |value| Ok(if finite(value) { value as f32 } else { f32::NAN }))?;
+    check_sensors(path, &matrix)?;
+    Ok(Tactile { samples: matrix.rows, pressures: matrix.values })
+}
+
 /// Refuses a matrix of too many columns, as one of sensors × times has: its distances would not fit the memory.
 fn check_sensors<T>(path: &Path, matrix: &Matrix<T>) -> Result<(), FileError> {
     if matrix.columns <= MAX_SENSORS {

@@ -64,23 +64,7 @@ pub fn write_truth(labels: &Path, tree: &Path, truth: &Truth) -> Result<(), File
 
 /// Reads the truth: a part for each of `sensors` sensors, and a tree over all the parts.
 pub fn read_truth(labels: &Path, tree: &Path, sensors: usize) -> Result<Truth, FileError> {
-    let mut part_of = vec![None; sensors];
-    for LabelRow { sensor, part } in read_rows(labels)? {
-        match part_of.get_mut(sensor) {
-            Some(slot @ None) => *slot = Some(part),
-            Some(Some(_)) => {
-                return Err(FileError::new(
-                    labels,
-                    format!("sensor {sensor} has two parts; give each sensor one row"),
-                ));
-            }
-            None => {
-                let message =
-                    format!("sensor {sensor} is not on the body map, which has sensors 0 to {}", sensors - 1);
-                return Err(FileError::new(labels, message));
-            }
-        }
-    }
+    let part_of = read_parts(labels, sensors)?;
     if let Some(sensor) = part_of.iter().position(Option::is_none) {
         return Err(FileError::new(
             labels,
@@ -93,6 +77,23 @@ pub fn read_truth(labels: &Path, tree: &Path, sensors: usize) -> Result<Truth, F
     };
     check_tree(&truth).map_err(|message| FileError::new(tree, message))?;
     Ok(truth)
+}
+
+/// Reads the part of each of `sensors` sensors; `None` for one that has no row. Other columns may follow.
+pub fn read_parts(path: &Path, sensors: usize) -> Result<Vec<Option<usize>>, FileError> {
+    let mut part_of = vec![None; sensors];
+    for LabelRow { sensor, part } in read_rows(path)? {
+        let message = match part_of.get_mut(sensor) {
+            Some(slot @ None) => {
+                *slot = Some(part);
+                continue;
+            }
+            Some(Some(_)) => format!("sensor {sensor} has two parts; give each sensor one row"),
+            None => format!("there is no sensor {sensor}: the data have sensors 0 to {}", sensors - 1),
+        };
+        return Err(FileError::new(path, message));
+    }
+    Ok(part_of)
 }
 
 /// Whether the edges connect all parts without a cycle: one fewer than parts, none between parts connected before.

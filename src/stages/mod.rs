@@ -11,6 +11,7 @@
 //! | 6 | [`schema`] | body map → [`Draw`](schema::Draw)s: component of each sensor, tree | equations 1 to 22 |
 //! | 7 | [`evaluate`] | draw, truth → [`Score`](evaluate::Score): adjusted Rand index, tree right or wrong | section 5.2 |
 //!
+//! Beside the paper, [`usable`] drops sensors that tell nothing, and [`co_motion`] finds how given parts are joined.
 //! Beside stage 6, [`baselines`] cluster the same body map; [`mixture`] holds what both build on, [`tree`] the trees.
 //! M is the number of sensors, T the number of samples, N the number of levels, d the number of dimensions.
 //!
@@ -20,6 +21,7 @@
 pub mod agent;
 pub mod baselines;
 pub mod body_map;
+pub mod co_motion;
 pub mod distance;
 pub mod evaluate;
 pub mod mixture;
@@ -28,3 +30,4 @@ pub mod schema;
 pub mod sense;
 pub mod simulate;
 pub mod tree;
+pub mod usable;

@@ -1,0 +1,140 @@
+//! The subcommand tree.
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use anyhow::{Result, ensure};
+use clap::Args;
+use serde::Serialize;
+
+use super::options::paper;
+use super::output::say;
+use crate::files::tables::{read_parts, read_truth, write_rows};
+use crate::files::{npy, prepare_folder};
+use crate::numerics::partition::sizes;
+use crate::numerics::rng::stream;
+use crate::report::text_tree::text_tree;
+use crate::stages::co_motion::{CoMotion, MAX_COMPONENTS, co_motion};
+use crate::stages::evaluate::score;
+use crate::stages::schema::Draw;
+use crate::stages::usable::{Usable, only, usable};
+
+/// How given parts are joined, from what they feel of their joints (not in the paper).
+///
+/// Reads pressures (T x M, any numbers) and the part of each sensor, and writes into DIR: tree.csv
+/// (child,parent,confidence) and edges.csv (part,other,agreement,confidence,in_tree: all pairs of parts). A joint has
+/// one speed, which both of its parts know: agreement, 0 to 1, says how well two parts know the same speed. Confidence is
+/// the share of trees over resampled times that have the edge.
+#[derive(Args)]
+pub struct Tree {
+    /// Pressures: a .npy file with a row for each sample and a column for each sensor
+    tactile: PathBuf,
+    /// Part of each sensor: a .csv file with columns sensor,part, such as parts.csv of infer; sensors without a row are
+    /// left out
+    #[arg(long, value_name = "FILE")]
+    parts: PathBuf,
+    /// Numbers that a part feels of its motion, 1 to 6 (chosen by the data, for each part, if not given)
+    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u64).range(1..=MAX_COMPONENTS as u64))]
+    components: Option<u64>,
+    #[arg(long, value_name = "S", help = super::options::with_default("Master seed of all random numbers", paper().experiment.seed))]
+    seed: Option<u64>,
+    /// True part of each sensor: a .csv file with columns sensor,part
+    #[arg(long, value_name = "FILE", requires = "tree")]
+    labels: Option<PathBuf>,
+    /// True tree: a .csv file with columns child,parent
+    #[arg(long, value_name = "FILE", requires = "labels")]
+    tree: Option<PathBuf>,
+    /// Folder to write to
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+}
+
+#[derive(Serialize)]
+struct TreeRow {
+    child: usize,
+    parent: usize,
+    confidence: f64,
+}
+
+#[derive(Serialize)]
+struct EdgeRow {
+    part: usize,
+    other: usize,
+    agreement: f64,
+    confidence: f64,
+    in_tree: bool,
+}
+
+impl Tree {
+    /// Runs the subcommand.
+    pub fn run(self) -> Result<ExitCode> {
+        let (input, out) = (&self.tactile, &self.out);
+        let all = npy::read_any_tactile(input)?;
+        let count = all.sensors();
+        let parts = read_parts(&self.parts, count)?;
+        let truth = self.labels.as_ref().zip(self.tree.as_ref());
+        let truth = truth.map(|(labels, tree)| read_truth(labels, tree, count)).transpose()?;
+        let Usable { tactile, sensors, dropped } = usable(all);
+        for (sensor, fault) in dropped.iter().filter(|(sensor, _)| parts[*sensor].is_some()) {
+            eprintln!("bodyschema: {}: sensor {sensor} is {fault}, and is left out", input.display());
+        }
+        let kept: Vec<usize> = (0..sensors.len()).filter(|at| parts[sensors[*at]].is_some()).collect();
+        let labels: Vec<usize> = kept.iter().filter_map(|&at| parts[sensors[at]]).collect();
+        ensure!(!labels.is_empty(), "{}: no sensor that has a part feels anything", input.display());
+        prepare_folder(out)?;
+        let mut rng = stream(self.seed.unwrap_or(paper().experiment.seed), 1, "co-motion", 0);
+        let components = self.components.map(|k| k as usize);
+        let found = co_motion(&only(&tactile, &kept), &labels, components, &mut rng);
+        write(out, &found)?;
+        print(&found, &labels)?;
+        if let Some(truth) = truth {
+            let own: Vec<usize> = kept.iter().map(|&at| truth.labels[sensors[at]]).collect();
+            let truth = crate::stages::tree::Truth { labels: own, tree: truth.tree };
+            let draw = Draw {
+                chain: 0,
+                sweep: 0,
+                labels,
+                tree: found.tree,
+                joints: Vec::new(),
+                log_posterior: None,
+            };
+            let score = score(&draw, &truth, 1.0);
+            let right = if score.tree_correct { "right" } else { "wrong" };
+            say(format!("against the truth: adjusted Rand index {:.3}, tree {right}", score.ari))?;
+        }
+        Ok(ExitCode::SUCCESS)
+    }
+}
+
+/// Writes tree.csv and edges.csv.
+pub fn write(out: &Path, found: &CoMotion) -> Result<()> {
+    let edges = found.tree.iter().map(|edge| TreeRow {
+        child: edge.child,
+        parent: edge.parent,
+        confidence: found.confidence(edge),
+    });
+    write_rows(&out.join("tree.csv"), edges)?;
+    let pairs = found.pairs.iter().map(|pair| EdgeRow {
+        part: pair.part,
+        other: pair.other,
+        agreement: pair.agreement,
+        confidence: pair.confidence,
+        in_tree: pair.in_tree,
+    });
+    Ok(write_rows(&out.join("edges.csv"), pairs)?)
+}
+
+/// Prints the tree, with the confidence of each edge.
+pub fn print(found: &CoMotion, labels: &[usize]) -> Result<()> {
+    let sizes = sizes(labels);
+    let place = |part: usize| found.parts.iter().position(|(label, _)| *label == part).unwrap_or_default();
+    let edge = |pair: &&crate::stages::co_motion::Pair| {
+        (place(pair.part), place(pair.other), format!("{:.0} %", 100.0 * pair.confidence))
+    };
+    let edges: Vec<_> = found.pairs.iter().filter(|pair| pair.in_tree).map(|pair| edge(&pair)).collect();
+    let name = |at: usize| {
+        let (part, components) = found.parts[at];
+        format!("part {part} ({} sensors, {components} numbers of its motion)", sizes[&part])
+    };
+    text_tree(found.parts.len(), &edges, &name).into_iter().try_for_each(say)
+}

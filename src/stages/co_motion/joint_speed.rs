@@ -1,0 +1,164 @@
+//! Compare what parts feel of their joints: quadratic forms of their motions that are the same at all times.
+
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+use rayon::prelude::*;
+
+use super::motion::Motion;
+
+/// Weight of a time at which the whole body hardly moves, in units of its mean square.
+const REST: f64 = 1e-3;
+/// What is added to the variances of products, as a share of their mean: forms of hardly any variance are noise.
+const RIDGE: f64 = 1e-3;
+
+/// Sums over times of the products of all quadratic monomials of all motions, by blocks of times.
+#[derive(Debug, Clone)]
+pub struct Moments {
+    /// Where the monomials of each part begin, and where the last end.
+    starts: Vec<usize>,
+    /// For each block, monomials × monomials.
+    blocks: Vec<DMatrix<f64>>,
+}
+
+impl Moments {
+    /// Of the motions of all parts at the same T times, in blocks of nearly equal length.
+    ///
+    /// A monomial is w_i w_j divided by the root of the whole body's Σ |w|² at the time, so that fast times count in
+    /// proportion to speed, not to its square.
+    pub fn new(motions: &[Motion], samples: usize, blocks: usize) -> Self {
+        let mut starts = vec![0];
+        for Motion { components: k, .. } in motions {
+            starts.push(starts[starts.len() - 1] + k * (k + 1) / 2);
+        }
+        let all = starts[motions.len()];
+        let own = |motion: &'_ Motion, t: usize| -> Vec<f64> {
+            motion.values[t * motion.components..][..motion.components].to_vec()
+        };
+        let energy =
+            |t: usize| -> f64 { motions.iter().flat_map(|motion| own(motion, t)).map(|w| w * w).sum() };
+        let energies: Vec<f64> = (0..samples).into_par_iter().map(energy).collect();
+        let mean = energies.iter().sum::<f64>() / samples.max(1) as f64;
+        let block = |at: usize| {
+            let times = at * samples / blocks..(at + 1) * samples / blocks;
+            let mut monomials = DMatrix::zeros(times.len(), all);
+            for (row, t) in times.enumerate() {
+                let scale = 1.0 / (mean * (energies[t] + REST * mean)).sqrt();
+                let mut column = 0;
+                for motion in motions {
+                    let w = own(motion, t);
+                    for i in 0..w.len() {
+                        for j in i..w.len() {
+                            monomials[(row, column)] = scale * w[i] * w[j];
+                            column += 1;
+                        }
+                    }
+                }
+            }
+            monomials.tr_mul(&monomials)
+        };
+        let blocks = if mean > 0.0 { (0..blocks).into_par_iter().map(block).collect() } else { Vec::new() };
+        Self { starts, blocks }
+    }
+
+    /// Number of blocks; none if nothing moves.
+    pub fn blocks(&self) -> usize {
+        self.blocks.len()
+    }
+
+    /// The sum over blocks, each counted so many times.
+    pub fn sum(&self, counts: &[usize]) -> DMatrix<f64> {
+        let all = self.starts[self.starts.len() - 1];
+        let mut sum = DMatrix::zeros(all, all);
+        for (block, &count) in self.blocks.iter().zip(counts).filter(|(_, count)| **count > 0) {
+            sum += block * count as f64;
+        }
+        sum
+    }
+
+    /// The [`correlations`] from a sum of these moments.
+    pub fn correlations(&self, sum: &DMatrix<f64>) -> DMatrix<f64> {
+        correlations(sum, &self.starts)
+    }
+}
+
+/// For each pair of parts, the largest cosine between a quadratic form of one's motion and one of the other's: their first
+/// canonical correlation (Hotelling 1936) without a constant, for a form is 0 at rest. 0 where a part feels nothing.
+///
+/// `moments` are sums of products of monomials, which begin for each part at `starts`. Out: parts × parts, 0 to 1,
+/// symmetric, 1 on the diagonal.
+pub fn correlations(moments: &DMatrix<f64>, starts: &[usize]) -> DMatrix<f64> {
+    let parts = starts.len() - 1;
+    let length = |part: usize| starts[part + 1] - starts[part];
+    let factors: Vec<Option<Cholesky<f64, Dyn>>> = (0..parts)
+        .map(|part| {
+            let n = length(part);
+            let own = moments.view((starts[part], starts[part]), (n, n));
+            let ridge = DVector::from_element(n, RIDGE * own.trace() / n.max(1) as f64);
+            (n > 0).then(|| (own + DMatrix::from_diagonal(&ridge)).cholesky()).flatten()
+        })
+        .collect();
+    let cosine = |a: usize, b: usize| {
+        let (Some(first), Some(second)) = (&factors[a], &factors[b]) else { return 0.0 };
+        let both = moments.view((starts[a], starts[b]), (length(a), length(b)));
+        let half = first.l().solve_lower_triangular(&both).expect("a factor is regular");
+        let whole = second.l().solve_lower_triangular(&half.transpose()).expect("a factor is regular");
+        whole.singular_values().max().clamp(0.0, 1.0)
+    };
+    let mut cosines = DMatrix::identity(parts, parts);
+    for (a, b) in (0..parts).flat_map(|a| (a + 1..parts).map(move |b| (a, b))) {
+        cosines[(a, b)] = cosine(a, b);
+        cosines[(b, a)] = cosines[(a, b)];
+    }
+    cosines
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::RngExt;
+
+    use super::*;
+    use crate::numerics::rng::stream;
+
+    /// Two planar parts whose frames turn against each other at random, and which share the velocity of a joint; and a third
+    /// that shares nothing. Each feels two numbers of velocity and one of its rate.
+    fn motions(samples: usize) -> Vec<Motion> {
+        let mut rng = stream(1, 1, "joint speed", 0);
+        let mut values = vec![Vec::new(); 3];
+        for _ in 0..samples {
+            let mut uniform = || rng.random_range(-1.0..1.0);
+            let (joint, angle, rates) = ([uniform(), uniform()], 3.0 * uniform(), [uniform(), uniform()]);
+            let (sine, cosine) = f64::sin_cos(angle);
+            let turned = [cosine * joint[0] - sine * joint[1], sine * joint[0] + cosine * joint[1]];
+            // v = the joint's velocity − ω × l, with l along x.
+            values[0].extend([joint[0], joint[1] - 0.7 * rates[0], rates[0]]);
+            values[1].extend([turned[0], turned[1] + 0.4 * rates[1], rates[1]]);
+            values[2].extend([uniform(), uniform(), uniform()]);
+        }
+        values.into_iter().map(|values| Motion { components: 3, values }).collect()
+    }
+
+    #[test]
+    fn parts_that_share_a_joint_know_its_speed() {
+        let motions = motions(5000);
+        let moments = Moments::new(&motions, 5000, 7);
+        let found = moments.correlations(&moments.sum(&[1; 7]));
+        // The ridge takes some thousandths.
+        assert!(found[(0, 1)] > 0.995, "{found}");
+        assert!(found[(0, 2)] < 0.95 && found[(1, 2)] < 0.95, "{found}");
+        assert!(found == found.transpose());
+        // No linear form of the one is one of the other: the joint bends.
+        let column = |part: usize, at: usize| motions[part].values.iter().skip(at).step_by(3).copied();
+        let product = |a: usize, b: usize| column(0, a).zip(column(1, b)).map(|(x, y)| x * y).sum::<f64>();
+        assert!((0..3).all(|a| (0..3).all(|b| product(a, b).abs() < 0.15 * 5000.0 / 3.0)));
+    }
+
+    #[test]
+    fn a_part_that_feels_nothing_agrees_with_none() {
+        let mut motions = motions(100);
+        motions.push(Motion { components: 0, values: Vec::new() });
+        motions[1].values.fill(0.0);
+        let moments = Moments::new(&motions, 100, 2);
+        let found = moments.correlations(&moments.sum(&[1, 1]));
+        assert_eq!((found[(0, 3)], found[(0, 1)]), (0.0, 0.0));
+        assert!(found.iter().all(|cosine| (0.0..=1.0).contains(cosine)));
+    }
+}
