@@ -56,6 +56,53 @@ fn header(path: &Path) -> String {
     fs::read_to_string(path).unwrap().lines().next().unwrap().to_owned()
 }
 
+/// Pressures of a body, with a sensor that is dead, one that is constant and one that is no number, all in the beginning.
+fn with_faults(folder: &Path, tactile: &str, out: &str) {
+    let mut tactile = npy::read_tactile(&folder.join(tactile)).unwrap();
+    let samples = tactile.samples;
+    tactile.pressures[..samples].fill(0.0);
+    tactile.pressures[samples..2 * samples].fill(7.0);
+    tactile.pressures[2 * samples] = f32::NAN;
+    npy::write_tactile(&folder.join(out), &tactile).unwrap();
+}
+
+#[test]
+fn one_command_finds_parts_and_tree() {
+    let folder = folder_with_settings();
+    let at = |name: &str| folder.path().join(name);
+    fs::write(at("moving.toml"), format!("{SMALL}[motion]\ncoordination = 0.5\n")).unwrap();
+    succeed(folder.path(), "simulate --settings moving.toml --out body");
+    with_faults(folder.path(), "body/tactile.npy", "own.npy");
+    let truth = "--labels body/labels.csv --tree body/tree.csv";
+    let output = bodyschema(folder.path(), &format!("estimate own.npy {truth} --out found"));
+    assert!(output.status.success(), "{output:?}");
+    let (told, warned) =
+        (String::from_utf8(output.stdout).unwrap(), String::from_utf8(output.stderr).unwrap());
+    assert!(told.starts_with("5 parts of 117 sensors"), "{told}");
+    assert!(told.contains("adjusted Rand index 1.000, tree right"), "{told}");
+    assert!(warned.contains("3 of 120 sensors are left out (the first, 0, is dead)"), "{warned}");
+    let faults: Vec<String> = rows(&at("found/dropped.csv")).iter().map(|row| row["fault"].clone()).collect();
+    assert_eq!(faults, ["dead", "constant", "not a number"]);
+    assert_eq!(rows(&at("found/parts.csv")).len(), 117);
+    assert_eq!(rows(&at("found/tree.csv")).len(), 4);
+    let summary = fs::read_to_string(at("found/summary.json")).unwrap();
+    assert!(summary.contains("\"parts\": 5") && summary.contains("\"dropped\": 3"), "{summary}");
+    // The parts that were found are parts for `tree`.
+    succeed(folder.path(), "tree body/tactile.npy --parts found/parts.csv --out joined");
+    assert_eq!(fs::read(at("joined/tree.csv")).unwrap(), fs::read(at("found/tree.csv")).unwrap());
+
+    let mut silent = npy::read_tactile(&at("body/tactile.npy")).unwrap();
+    silent.pressures.fill(0.0);
+    npy::write_tactile(&at("silent.npy"), &silent).unwrap();
+    for command in ["estimate silent.npy --out s", "tree silent.npy --parts body/labels.csv --out s"] {
+        let output = bodyschema(folder.path(), command);
+        let warned = String::from_utf8(output.stderr).unwrap();
+        assert!(output.status.code() == Some(2) && warned.contains("feel"), "{warned}");
+    }
+    let output = bodyschema(folder.path(), "tree body/tactile.npy --parts body/tree.csv --out s");
+    assert_eq!(output.status.code(), Some(2), "{output:?}");
+}
+
 #[test]
 fn stages_by_hand_repeat_the_experiment() {
     let folder = folder_with_settings();

@@ -1,5 +1,6 @@
 //! The command line: one subcommand for each stage and each experiment, and two for finished results.
 
+mod estimate;
 mod experiments;
 mod options;
 mod output;

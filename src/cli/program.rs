@@ -5,6 +5,7 @@ use std::process::ExitCode;
 use anyhow::Result;
 use clap::{Parser, Subcommand};
 
+use super::estimate::Estimate;
 use super::experiments::{Compare, Multiverse, Reproduce, Search, Sensitivity};
 use super::results::{Plot, Verify};
 use super::stages::{Distance, Infer, Map, Simulate};
@@ -26,6 +27,7 @@ enum Command {
     Map(Map),
     Infer(Infer),
     Tree(Tree),
+    Estimate(Estimate),
     Reproduce(Reproduce),
     Search(Search),
     Sensitivity(Sensitivity),
@@ -43,6 +45,7 @@ impl Command {
             Self::Map(command) => command.run(),
             Self::Infer(command) => command.run(),
             Self::Tree(command) => command.run(),
+            Self::Estimate(command) => command.run(),
             Self::Reproduce(command) => command.run(),
             Self::Search(command) => command.run(),
             Self::Sensitivity(command) => command.run(),

@@ -17,6 +17,7 @@ use crate::report::text_tree::text_tree;
 use crate::stages::co_motion::{CoMotion, MAX_COMPONENTS, co_motion};
 use crate::stages::evaluate::score;
 use crate::stages::schema::Draw;
+use crate::stages::tree::{Edge, Truth};
 use crate::stages::usable::{Usable, only, usable};
 
 /// How given parts are joined, from what they feel of their joints (not in the paper).
@@ -88,22 +89,19 @@ impl Tree {
         write(out, &found)?;
         print(&found, &labels)?;
         if let Some(truth) = truth {
-            let own: Vec<usize> = kept.iter().map(|&at| truth.labels[sensors[at]]).collect();
-            let truth = crate::stages::tree::Truth { labels: own, tree: truth.tree };
-            let draw = Draw {
-                chain: 0,
-                sweep: 0,
-                labels,
-                tree: found.tree,
-                joints: Vec::new(),
-                log_posterior: None,
-            };
-            let score = score(&draw, &truth, 1.0);
-            let right = if score.tree_correct { "right" } else { "wrong" };
-            say(format!("against the truth: adjusted Rand index {:.3}, tree {right}", score.ari))?;
+            let own = kept.iter().map(|&at| truth.labels[sensors[at]]).collect();
+            print_score(labels, found.tree, &Truth { labels: own, tree: truth.tree })?;
         }
         Ok(ExitCode::SUCCESS)
     }
+}
+
+/// Prints how parts and tree compare with the truth.
+pub fn print_score(labels: Vec<usize>, tree: Vec<Edge>, truth: &Truth) -> Result<()> {
+    let draw = Draw { chain: 0, sweep: 0, labels, tree, joints: Vec::new(), log_posterior: None };
+    let score = score(&draw, truth, 1.0);
+    let right = if score.tree_correct { "right" } else { "wrong" };
+    say(format!("against the truth: adjusted Rand index {:.3}, tree {right}", score.ari))
 }
 
 /// Writes tree.csv and edges.csv.

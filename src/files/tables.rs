@@ -275,7 +275,7 @@ mod tests {
         let (good_labels, good_tree) = ("sensor,part\n0,0\n1,1\n2,2\n", "child,parent\n1,0\n2,1\n");
         rejects("sensor,part\n0,0\n1,1\n1,1\n", good_tree, "sensor 1 has two parts");
         rejects("sensor,part\n0,0\n1,1\n", good_tree, "sensor 2 of 3 has no part");
-        rejects("sensor,part\n0,0\n1,1\n3,1\n", good_tree, "sensor 3 is not on the body map");
+        rejects("sensor,part\n0,0\n1,1\n3,1\n", good_tree, "there is no sensor 3");
         rejects("sensor,part\n0,0\n1,x\n", good_tree, "line 3: ");
         rejects("sensor;part\n0;0\n", good_tree, "missing field `sensor`");
         rejects(good_labels, "child,parent\n1,0\n", "1 edges do not make a tree over 3 parts");

@@ -1,7 +1,8 @@
 //! `tree`: how the parts are joined, from what they feel of their joints (an extension; not in the paper).
 //!
 //! In: [`Tactile`](super::sense::Tactile) pressures of M sensors at T times, and the part of each sensor. Out: a
-//! [`CoMotion`], a tree over the parts with a confidence for each edge. `docs/co-motion.md` has the theory.
+//! [`CoMotion`], a tree over the parts with a confidence for each edge. `docs/co-motion.md` has the theory. What a part feels
+//! of its motion also [mends estimated parts](rigid_parts).
 //!
 //! A joint belongs to both of its parts, so that both know its speed: |v + ω × l|, from the velocity v, the rate ω and the
 //! place l of the joint in the frame of either. It is the same number, however the joint is bent, and in each frame its
@@ -10,8 +11,10 @@
 
 mod joint_speed;
 mod motion;
+mod rigid;
 mod tree;
 
 pub use self::joint_speed::{Moments, correlations};
 pub use self::motion::{MAX_COMPONENTS, Motion, motion};
+pub use self::rigid::rigid_parts;
 pub use self::tree::{CoMotion, Pair, co_motion};

@@ -14,6 +14,8 @@
 use nalgebra::{DMatrix, DVectorView, RowDVector, SMatrix, SVector};
 use rayon::prelude::*;
 
+use crate::stages::sense::Tactile;
+
 /// Most numbers of a motion: velocity and rate of a rigid body.
 pub const MAX_COMPONENTS: usize = 6;
 /// Sensors of a part that are read, spread over all: enough for six numbers.
@@ -33,7 +35,8 @@ const NEGLIGIBLE: f64 = 0.01;
 const RIDGE: f64 = 1e-6;
 
 type Square = SMatrix<f64, MAX_COMPONENTS, MAX_COMPONENTS>;
-type Column = SVector<f64, MAX_COMPONENTS>;
+/// Up to six numbers, the last ones 0.
+pub type Column = SVector<f64, MAX_COMPONENTS>;
 
 /// What a part feels of its own motion.
 #[derive(Debug, Clone, PartialEq)]
@@ -74,6 +77,64 @@ pub fn motion(series: &[&[f32]], components: Option<usize>, signed: bool) -> Mot
 fn spread(n: usize, most: usize) -> impl Iterator<Item = usize> {
     let count = n.min(most);
     (0..count).map(move |at| at * n / count)
+}
+
+/// What all sensors of a body feel at some times, spread over all.
+pub struct Felt<'a> {
+    tactile: &'a Tactile,
+    signed: bool,
+    /// Of all sensors.
+    roots: Roots,
+}
+
+impl<'a> Felt<'a> {
+    /// Of M × T pressures.
+    pub fn new(tactile: &'a Tactile) -> Self {
+        let signed = is_signed(tactile);
+        let series: Vec<&[f32]> = tactile.series().collect();
+        Self { tactile, signed, roots: Roots::at(&series, spread(tactile.samples, TIMES), signed) }
+    }
+
+    /// The motion of a part with these sensors at these times, and the number of its components, which the data choose if it
+    /// is not given.
+    pub fn motions(&self, sensors: &[usize], components: Option<usize>) -> (Vec<Column>, usize) {
+        let all: Vec<&[f32]> = self.tactile.series().collect();
+        let own = spread(sensors.len(), MAX_SENSORS).map(|at| all[sensors[at]]).collect::<Vec<_>>();
+        let roots = Roots::at(&own, spread(self.tactile.samples, TIMES), self.signed);
+        let Some(loadings) = roots.learn(components) else {
+            return (vec![Column::zeros(); roots.felt.len()], 0);
+        };
+        let (rows, k) = (rows(&loadings), loadings.ncols());
+        let motion =
+            |t: usize| (0..TURNS).fold(Column::zeros(), |found, _| roots.motion_at(t, &rows, k, &found));
+        ((0..roots.felt.len()).into_par_iter().map(motion).collect(), k)
+    }
+
+    /// The share of a sensor's squares that c · w leaves with its best c, for w of some part.
+    pub fn left(&self, sensor: usize, motions: &[Column]) -> f64 {
+        let own = self.roots.values.row(sensor);
+        let predicted =
+            |c: &Column, motion: &Column| if self.signed { c.dot(motion) } else { c.dot(motion).max(0.0) };
+        let mut c = Column::zeros();
+        for _ in 0..TURNS {
+            let (mut squares, mut products) = (Square::zeros(), Column::zeros());
+            for ((motion, &root), &felt) in motions.iter().zip(own.iter()).zip(&self.roots.felt) {
+                if root >= felt || c.dot(motion) > root {
+                    squares += motion * motion.transpose();
+                    products += root * motion;
+                }
+            }
+            c = solve(squares, &products, MAX_COMPONENTS);
+        }
+        let left =
+            motions.iter().zip(own.iter()).map(|(motion, root)| (root - predicted(&c, motion)).powi(2));
+        left.sum::<f64>() / own.norm_squared()
+    }
+}
+
+/// Whether any pressure is negative.
+pub fn is_signed(tactile: &Tactile) -> bool {
+    tactile.pressures.par_iter().any(|pressure| *pressure < 0.0)
 }
 
 /// Roots of the pressures on some sensors at some times.

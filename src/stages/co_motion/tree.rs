@@ -5,7 +5,7 @@ use rand::{Rng, RngExt};
 use rayon::prelude::*;
 
 use super::joint_speed::Moments;
-use super::motion::{Motion, motion};
+use super::motion::{Motion, is_signed, motion};
 use crate::numerics::partition::sizes;
 use crate::stages::sense::Tactile;
 use crate::stages::tree::{Edge, prim};
@@ -63,7 +63,7 @@ pub fn co_motion(
     rng: &mut impl Rng,
 ) -> CoMotion {
     assert_eq!(labels.len(), tactile.sensors(), "a part for each sensor");
-    let signed = tactile.pressures.iter().any(|pressure| *pressure < 0.0);
+    let signed = is_signed(tactile);
     let parts: Vec<usize> = sizes(labels).into_keys().collect();
     let series = |part: usize| -> Vec<&[f32]> {
         let own = tactile.series().zip(labels).filter(|(_, label)| **label == part);
