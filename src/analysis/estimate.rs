@@ -6,7 +6,7 @@ use thiserror::Error;
 use super::posterior::Posterior;
 use crate::numerics::partition::sizes;
 use crate::stages::body_map::{BodyMap, ClassicalScaling, MapError};
-use crate::stages::co_motion::{CoMotion, co_motion, rigid_parts};
+use crate::stages::co_motion::{CoMotion, co_motion, is_signed, rigid_parts};
 use crate::stages::distance::information_metric;
 use crate::stages::quantise::{Quantise, quantise};
 use crate::stages::schema::{InferenceError, Model, Schema, infer};
@@ -57,10 +57,11 @@ pub fn estimate(
     rng: &mut impl Rng,
     tick: &(dyn Fn() + Sync),
 ) -> Result<Estimate, EstimateError> {
-    let distances = information_metric(&quantise(&from_zero(tactile), levels));
+    let symbols =
+        if is_signed(tactile) { quantise(&from_zero(tactile), levels) } else { quantise(tactile, levels) };
+    let distances = information_metric(&symbols);
     let scaling = ClassicalScaling::new(&distances, DIMENSIONS)?;
-    let dims = (1..=DIMENSIONS).rev().find(|dims| scaling.coordinates(*dims).is_ok()).unwrap_or(1);
-    let map = scaling.coordinates(dims)?;
+    let map = scaling.coordinates(scaling.positive().clamp(1, DIMENSIONS))?;
     let draws = infer(&map, Model::DpgmmLj, schema, seed, 1, tick)?;
     let posterior = Posterior::of(&map, Model::DpgmmLj, &draws, schema, seed, 1)?;
     let labels = rigid_parts(tactile, &posterior.consensus.labels);
@@ -75,7 +76,7 @@ pub fn estimate(
     })
 }
 
-/// Pressures that are not negative, in the same order: each sensor's minus its smallest, if any is negative.
+/// Pressures that are not negative, in the same order: each sensor's minus its smallest negative one.
 fn from_zero(tactile: &Tactile) -> Tactile {
     let mut pressures = tactile.pressures.clone();
     for series in pressures.chunks_exact_mut(tactile.samples) {

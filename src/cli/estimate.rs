@@ -1,23 +1,25 @@
 //! The subcommand estimate.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Context, Result, ensure};
 use clap::Args;
 use serde::Serialize;
 
-use super::options::SettingsAndSeed;
+use super::options::{SettingsAndSeed, TruthFiles};
 use super::output::say;
+use super::posterior::write_parts;
 use super::tree;
-use crate::analysis::estimate::estimate;
+use crate::analysis::estimate::{self, estimate};
 use crate::experiments::progress::progress;
-use crate::files::tables::{read_truth, write_rows};
+use crate::files::tables::write_rows;
 use crate::files::{npy, prepare_folder, write_text};
 use crate::numerics::rng::stream;
 use crate::settings::Base;
+use crate::stages::sense::Tactile;
 use crate::stages::tree::Truth;
-use crate::stages::usable::{Usable, usable};
+use crate::stages::usable::{Fault, Usable, usable};
 
 /// Parts and tree of any body, from touch alone: for one's own robot (not in the paper).
 ///
@@ -31,22 +33,11 @@ pub struct Estimate {
     tactile: PathBuf,
     #[command(flatten)]
     common: SettingsAndSeed,
-    /// True part of each sensor: a .csv file with columns sensor,part
-    #[arg(long, value_name = "FILE", requires = "tree")]
-    labels: Option<PathBuf>,
-    /// True tree: a .csv file with columns child,parent
-    #[arg(long, value_name = "FILE", requires = "labels")]
-    tree: Option<PathBuf>,
+    #[command(flatten)]
+    truth: TruthFiles,
     /// Folder to write to
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
-}
-
-#[derive(Serialize)]
-struct SensorRow {
-    sensor: usize,
-    part: usize,
-    probability: f64,
 }
 
 #[derive(Serialize)]
@@ -77,8 +68,7 @@ impl Estimate {
         let in_file = || input.display().to_string();
         let all = npy::read_any_tactile(input)?;
         let count = all.sensors();
-        let truth = self.labels.as_ref().zip(self.tree.as_ref());
-        let truth = truth.map(|(labels, tree)| read_truth(labels, tree, count)).transpose()?;
+        let truth = self.truth.read(count)?;
         let Usable { tactile, sensors, dropped } = usable(all);
         if let Some((first, fault)) = dropped.first() {
             eprintln!(
@@ -99,27 +89,7 @@ impl Estimate {
         let found = estimate(&tactile, &settings.quantise, &settings.schema, seed, &mut rng, &|| bar.inc(1))
             .with_context(in_file)?;
         bar.finish_and_clear();
-        let rows = found.labels.iter().zip(&found.certainty).zip(&sensors);
-        let row = |((&part, &probability), &sensor): ((&usize, &f64), &usize)| SensorRow {
-            sensor,
-            part,
-            probability,
-        };
-        write_rows(&out.join("parts.csv"), rows.map(row))?;
-        let fault = |(sensor, fault): &(usize, _)| DroppedRow { sensor: *sensor, fault: format!("{fault}") };
-        write_rows(&out.join("dropped.csv"), dropped.iter().map(fault))?;
-        tree::write(out, &found.tree)?;
-        let summary = Summary {
-            samples: tactile.samples,
-            sensors: count,
-            dropped: dropped.len(),
-            dimensions: found.map.dims,
-            parts: found.tree.parts.len(),
-            mended_sensors: found.mended,
-            seed,
-            revision: env!("BODYSCHEMA_REVISION"),
-        };
-        write_text(&out.join("summary.json"), &serde_json::to_string_pretty(&summary)?)?;
+        let summary = write(out, &found, &tactile, &sensors, &dropped, seed)?;
         say(format!(
             "{} parts of {} sensors over {} samples (body map of {} dimensions; {} sensors mended), in {}",
             summary.parts,
@@ -132,11 +102,39 @@ impl Estimate {
         tree::print(&found.tree, &found.labels)?;
         if let Some(truth) = truth {
             let own = sensors.iter().map(|&sensor| truth.labels[sensor]).collect();
-            tree::print_score(found.labels, found.tree.tree, &Truth { labels: own, tree: truth.tree })?;
+            let draw = tree::draw_of(found.labels, found.tree.tree);
+            tree::print_score(&draw, &Truth { labels: own, tree: truth.tree }, 1.0)?;
         }
         if let Some(what) = found.posterior.unmixed() {
             eprintln!("bodyschema: the chains have not mixed: {what}; more schema.sweeps may help");
         }
         Ok(ExitCode::SUCCESS)
     }
+}
+
+/// Writes all files.
+fn write(
+    out: &Path,
+    found: &estimate::Estimate,
+    tactile: &Tactile,
+    sensors: &[usize],
+    dropped: &[(usize, Fault)],
+    seed: u64,
+) -> Result<Summary> {
+    write_parts(out, sensors.iter().copied(), &found.labels, &found.certainty)?;
+    let row = |(sensor, fault): &(usize, Fault)| DroppedRow { sensor: *sensor, fault: fault.to_string() };
+    write_rows(&out.join("dropped.csv"), dropped.iter().map(row))?;
+    tree::write(out, &found.tree)?;
+    let summary = Summary {
+        samples: tactile.samples,
+        sensors: sensors.len() + dropped.len(),
+        dropped: dropped.len(),
+        dimensions: found.map.dims,
+        parts: found.tree.parts.len(),
+        mended_sensors: found.mended,
+        seed,
+        revision: env!("BODYSCHEMA_REVISION"),
+    };
+    write_text(&out.join("summary.json"), &serde_json::to_string_pretty(&summary)?)?;
+    Ok(summary)
 }

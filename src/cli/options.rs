@@ -9,10 +9,12 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use crate::analysis::published::Experiment;
+use crate::files::tables::read_truth;
 use crate::settings::{Base, Settings};
 use crate::stages::body_map::{MapMethod, MapOf};
 use crate::stages::quantise::Scheme;
 use crate::stages::schema::{EdgeWeight, Keep, Model, Sampler, Start};
+use crate::stages::tree::Truth;
 
 /// The number of threads.
 #[derive(Args)]
@@ -71,6 +73,25 @@ impl SettingsAndSeed {
     fn seeded(&self, mut settings: Settings) -> Settings {
         set(&mut settings.experiment.seed, self.seed);
         settings
+    }
+}
+
+/// The truth, to compare with.
+#[derive(Args)]
+pub struct TruthFiles {
+    /// True part of each sensor: a .csv file with columns sensor,part
+    #[arg(long, value_name = "FILE", requires = "tree")]
+    labels: Option<PathBuf>,
+    /// True tree: a .csv file with columns child,parent
+    #[arg(long, value_name = "FILE", requires = "labels")]
+    tree: Option<PathBuf>,
+}
+
+impl TruthFiles {
+    /// The truth of a body with so many sensors, if it is given.
+    pub fn read(&self, sensors: usize) -> Result<Option<Truth>> {
+        let files = self.labels.as_ref().zip(self.tree.as_ref());
+        Ok(files.map(|(labels, tree)| read_truth(labels, tree, sensors)).transpose()?)
     }
 }
 

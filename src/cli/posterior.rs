@@ -6,12 +6,12 @@ use anyhow::Result;
 use serde::Serialize;
 
 use super::output::say;
+use super::tree::print_score;
 use crate::analysis::diagnostics::Mixing;
 use crate::analysis::posterior::Posterior;
 use crate::files::tables::write_rows;
 use crate::numerics::partition::sizes;
 use crate::report::text_tree::text_tree;
-use crate::stages::evaluate::score;
 use crate::stages::tree::Truth;
 
 #[derive(Serialize)]
@@ -47,10 +47,7 @@ pub fn write(out: &Path, posterior: &Posterior) -> Result<()> {
     let counts = posterior.parts.iter().map(|&(parts, probability)| CountRow { parts, probability });
     write_rows(&out.join("posterior.csv"), counts)?;
     let consensus = &posterior.consensus;
-    let sensors = consensus.labels.iter().zip(&consensus.certainty).enumerate();
-    let sensor =
-        |(sensor, (&part, &probability)): (usize, (&usize, &f64))| SensorRow { sensor, part, probability };
-    write_rows(&out.join("parts.csv"), sensors.map(sensor))?;
+    write_parts(out, 0..consensus.labels.len(), &consensus.labels, &consensus.certainty)?;
     if let Some(tree) = &posterior.tree {
         let edge = |&(part, other, probability): &(usize, usize, f64)| EdgeRow {
             part,
@@ -67,6 +64,18 @@ pub fn write(out: &Path, posterior: &Posterior) -> Result<()> {
         ess: mixing.ess,
     };
     Ok(write_rows(&out.join("diagnostics.csv"), mixing.map(row))?)
+}
+
+/// Writes parts.csv.
+pub fn write_parts(
+    out: &Path,
+    sensors: impl IntoIterator<Item = usize>,
+    labels: &[usize],
+    certainty: &[f64],
+) -> Result<()> {
+    let rows = sensors.into_iter().zip(labels.iter().zip(certainty));
+    let row = |(sensor, (&part, &probability))| SensorRow { sensor, part, probability };
+    Ok(write_rows(&out.join("parts.csv"), rows.map(row))?)
 }
 
 /// Prints the number of parts, the tree, and whether the chains have mixed; and how the consensus compares with the truth, if
@@ -94,9 +103,7 @@ pub fn print(posterior: &Posterior, truth: Option<&Truth>, eligible_ari: f64) ->
         say(format!("probability of this tree, given these parts: {}", percent(tree.probability)))?;
     }
     if let Some(truth) = truth {
-        let score = score(&posterior.draw(), truth, eligible_ari);
-        let right = if score.tree_correct { "right" } else { "wrong" };
-        say(format!("against the truth: adjusted Rand index {:.3}, tree {right}", score.ari))?;
+        print_score(&posterior.draw(), truth, eligible_ari)?;
     }
     if let Some(what) = posterior.unmixed() {
         eprintln!(

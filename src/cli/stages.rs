@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use anyhow::{Context, Result, ensure};
 use clap::Args;
 
-use super::options::{SettingsAndSeed, SettingsFile, choice, paper, set, with_default};
+use super::options::{SettingsAndSeed, SettingsFile, TruthFiles, choice, paper, set, with_default};
 use super::output::say;
 use super::posterior;
 use crate::analysis::consensus::named_after;
@@ -234,12 +234,8 @@ pub struct Infer {
     burn_in: Option<usize>,
     #[command(flatten)]
     common: SettingsAndSeed,
-    /// True part of each sensor: a .csv file with columns sensor,part
-    #[arg(long, value_name = "FILE", requires = "tree")]
-    labels: Option<PathBuf>,
-    /// True tree: a .csv file with columns child,parent
-    #[arg(long, value_name = "FILE", requires = "labels")]
-    tree: Option<PathBuf>,
+    #[command(flatten)]
+    truth: TruthFiles,
     /// Folder to write to
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
@@ -253,8 +249,7 @@ impl Infer {
         let (input, out) = (&self.body_map, &self.out);
         let map = npy::read_body_map(input)?;
         prepare_folder(out)?;
-        let truth = self.labels.as_ref().zip(self.tree.as_ref());
-        let truth = truth.map(|(labels, tree)| tables::read_truth(labels, tree, map.points())).transpose()?;
+        let truth = self.truth.read(map.points())?;
         let bar = progress(schema.chains as u64, "infer".to_owned());
         let mut draws = infer(&map, self.model, schema, experiment.seed, 1, &|| bar.inc(1))
             .with_context(|| input.display().to_string())?;

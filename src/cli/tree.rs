@@ -7,14 +7,14 @@ use anyhow::{Result, ensure};
 use clap::Args;
 use serde::Serialize;
 
-use super::options::paper;
+use super::options::{TruthFiles, paper, with_default};
 use super::output::say;
-use crate::files::tables::{read_parts, read_truth, write_rows};
+use crate::files::tables::{read_parts, write_rows};
 use crate::files::{npy, prepare_folder};
 use crate::numerics::partition::sizes;
 use crate::numerics::rng::stream;
 use crate::report::text_tree::text_tree;
-use crate::stages::co_motion::{CoMotion, MAX_COMPONENTS, co_motion};
+use crate::stages::co_motion::{CoMotion, MAX_COMPONENTS, Pair, co_motion};
 use crate::stages::evaluate::score;
 use crate::stages::schema::Draw;
 use crate::stages::tree::{Edge, Truth};
@@ -37,14 +37,10 @@ pub struct Tree {
     /// Numbers that a part feels of its motion, 1 to 6 (chosen by the data, for each part, if not given)
     #[arg(long, value_name = "K", value_parser = clap::value_parser!(u64).range(1..=MAX_COMPONENTS as u64))]
     components: Option<u64>,
-    #[arg(long, value_name = "S", help = super::options::with_default("Master seed of all random numbers", paper().experiment.seed))]
+    #[arg(long, value_name = "S", help = with_default("Master seed of all random numbers", paper().experiment.seed))]
     seed: Option<u64>,
-    /// True part of each sensor: a .csv file with columns sensor,part
-    #[arg(long, value_name = "FILE", requires = "tree")]
-    labels: Option<PathBuf>,
-    /// True tree: a .csv file with columns child,parent
-    #[arg(long, value_name = "FILE", requires = "labels")]
-    tree: Option<PathBuf>,
+    #[command(flatten)]
+    truth: TruthFiles,
     /// Folder to write to
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
@@ -73,8 +69,7 @@ impl Tree {
         let all = npy::read_any_tactile(input)?;
         let count = all.sensors();
         let parts = read_parts(&self.parts, count)?;
-        let truth = self.labels.as_ref().zip(self.tree.as_ref());
-        let truth = truth.map(|(labels, tree)| read_truth(labels, tree, count)).transpose()?;
+        let truth = self.truth.read(count)?;
         let Usable { tactile, sensors, dropped } = usable(all);
         for (sensor, fault) in dropped.iter().filter(|(sensor, _)| parts[*sensor].is_some()) {
             eprintln!("bodyschema: {}: sensor {sensor} is {fault}, and is left out", input.display());
@@ -85,21 +80,26 @@ impl Tree {
         prepare_folder(out)?;
         let mut rng = stream(self.seed.unwrap_or(paper().experiment.seed), 1, "co-motion", 0);
         let components = self.components.map(|k| k as usize);
-        let found = co_motion(&only(&tactile, &kept), &labels, components, &mut rng);
+        let found = co_motion(&only(tactile, &kept), &labels, components, &mut rng);
         write(out, &found)?;
         print(&found, &labels)?;
         if let Some(truth) = truth {
             let own = kept.iter().map(|&at| truth.labels[sensors[at]]).collect();
-            print_score(labels, found.tree, &Truth { labels: own, tree: truth.tree })?;
+            let draw = draw_of(labels, found.tree);
+            print_score(&draw, &Truth { labels: own, tree: truth.tree }, 1.0)?;
         }
         Ok(ExitCode::SUCCESS)
     }
 }
 
+/// Parts and a tree over them, as a draw.
+pub fn draw_of(labels: Vec<usize>, tree: Vec<Edge>) -> Draw {
+    Draw { chain: 0, sweep: 0, labels, tree, joints: Vec::new(), log_posterior: None }
+}
+
 /// Prints how parts and tree compare with the truth.
-pub fn print_score(labels: Vec<usize>, tree: Vec<Edge>, truth: &Truth) -> Result<()> {
-    let draw = Draw { chain: 0, sweep: 0, labels, tree, joints: Vec::new(), log_posterior: None };
-    let score = score(&draw, truth, 1.0);
+pub fn print_score(draw: &Draw, truth: &Truth, eligible_ari: f64) -> Result<()> {
+    let score = score(draw, truth, eligible_ari);
     let right = if score.tree_correct { "right" } else { "wrong" };
     say(format!("against the truth: adjusted Rand index {:.3}, tree {right}", score.ari))
 }
@@ -126,10 +126,9 @@ pub fn write(out: &Path, found: &CoMotion) -> Result<()> {
 pub fn print(found: &CoMotion, labels: &[usize]) -> Result<()> {
     let sizes = sizes(labels);
     let place = |part: usize| found.parts.iter().position(|(label, _)| *label == part).unwrap_or_default();
-    let edge = |pair: &&crate::stages::co_motion::Pair| {
-        (place(pair.part), place(pair.other), format!("{:.0} %", 100.0 * pair.confidence))
-    };
-    let edges: Vec<_> = found.pairs.iter().filter(|pair| pair.in_tree).map(|pair| edge(&pair)).collect();
+    let edge =
+        |pair: &Pair| (place(pair.part), place(pair.other), format!("{:.0} %", 100.0 * pair.confidence));
+    let edges: Vec<_> = found.pairs.iter().filter(|pair| pair.in_tree).map(edge).collect();
     let name = |at: usize| {
         let (part, components) = found.parts[at];
         format!("part {part} ({} sensors, {components} numbers of its motion)", sizes[&part])

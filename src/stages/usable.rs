@@ -52,12 +52,14 @@ pub fn usable(tactile: Tactile) -> Usable {
     let faults: Vec<Option<Fault>> = tactile.series().map(fault).collect();
     let dropped = faults.iter().enumerate().filter_map(|(sensor, fault)| Some((sensor, (*fault)?))).collect();
     let sensors: Vec<usize> = (0..faults.len()).filter(|sensor| faults[*sensor].is_none()).collect();
-    let tactile = if sensors.len() == faults.len() { tactile } else { only(&tactile, &sensors) };
-    Usable { tactile, sensors, dropped }
+    Usable { tactile: only(tactile, &sensors), sensors, dropped }
 }
 
-/// The pressures of some sensors.
-pub fn only(tactile: &Tactile, sensors: &[usize]) -> Tactile {
+/// The pressures of some sensors, which rise.
+pub fn only(tactile: Tactile, sensors: &[usize]) -> Tactile {
+    if sensors.len() == tactile.sensors() {
+        return tactile;
+    }
     let series = |sensor: &usize| &tactile.pressures[sensor * tactile.samples..][..tactile.samples];
     Tactile { samples: tactile.samples, pressures: sensors.iter().flat_map(series).copied().collect() }
 }

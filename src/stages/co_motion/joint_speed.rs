@@ -30,11 +30,8 @@ impl Moments {
             starts.push(starts[starts.len() - 1] + k * (k + 1) / 2);
         }
         let all = starts[motions.len()];
-        let own = |motion: &'_ Motion, t: usize| -> Vec<f64> {
-            motion.values[t * motion.components..][..motion.components].to_vec()
-        };
         let energy =
-            |t: usize| -> f64 { motions.iter().flat_map(|motion| own(motion, t)).map(|w| w * w).sum() };
+            |t: usize| -> f64 { motions.iter().flat_map(|motion| motion.at(t)).map(|w| w * w).sum() };
         let energies: Vec<f64> = (0..samples).into_par_iter().map(energy).collect();
         let mean = energies.iter().sum::<f64>() / samples.max(1) as f64;
         let block = |at: usize| {
@@ -44,7 +41,7 @@ impl Moments {
                 let scale = 1.0 / (mean * (energies[t] + REST * mean)).sqrt();
                 let mut column = 0;
                 for motion in motions {
-                    let w = own(motion, t);
+                    let w = motion.at(t);
                     for i in 0..w.len() {
                         for j in i..w.len() {
                             monomials[(row, column)] = scale * w[i] * w[j];

@@ -15,6 +15,6 @@ mod rigid;
 mod tree;
 
 pub use self::joint_speed::{Moments, correlations};
-pub use self::motion::{MAX_COMPONENTS, Motion, motion};
+pub use self::motion::{MAX_COMPONENTS, Motion, is_signed, motion};
 pub use self::rigid::rigid_parts;
 pub use self::tree::{CoMotion, Pair, co_motion};

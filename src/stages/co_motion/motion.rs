@@ -47,6 +47,13 @@ pub struct Motion {
     pub values: Vec<f64>,
 }
 
+impl Motion {
+    /// w at a time.
+    pub fn at(&self, t: usize) -> &[f64] {
+        &self.values[t * self.components..][..self.components]
+    }
+}
+
 /// What a part feels of its own motion, from the series of its sensors.
 ///
 /// `components` is k; without it, the fewest that explain nearly what six do. `signed` says whether negative pressures are
@@ -65,9 +72,7 @@ pub fn motion(series: &[&[f32]], components: Option<usize>, signed: bool) -> Mot
     values.par_chunks_mut(BLOCK * k).enumerate().for_each(|(block, values)| {
         let roots = Roots::at(&series, block * BLOCK..block * BLOCK + values.len() / k, signed);
         for (t, motion) in values.chunks_exact_mut(k).enumerate() {
-            let mut found = Column::zeros();
-            (0..TURNS).for_each(|_| found = roots.motion_at(t, &rows, k, &found));
-            motion.copy_from_slice(&found.as_slice()[..k]);
+            motion.copy_from_slice(&roots.motion(t, &rows, k).as_slice()[..k]);
         }
     });
     Motion { components: k, values }
@@ -80,41 +85,33 @@ fn spread(n: usize, most: usize) -> impl Iterator<Item = usize> {
 }
 
 /// What all sensors of a body feel at some times, spread over all.
-pub struct Felt<'a> {
-    tactile: &'a Tactile,
-    signed: bool,
-    /// Of all sensors.
+pub struct Felt {
     roots: Roots,
 }
 
-impl<'a> Felt<'a> {
+impl Felt {
     /// Of M × T pressures.
-    pub fn new(tactile: &'a Tactile) -> Self {
-        let signed = is_signed(tactile);
+    pub fn new(tactile: &Tactile) -> Self {
         let series: Vec<&[f32]> = tactile.series().collect();
-        Self { tactile, signed, roots: Roots::at(&series, spread(tactile.samples, TIMES), signed) }
+        Self { roots: Roots::at(&series, spread(tactile.samples, TIMES), is_signed(tactile)) }
     }
 
     /// The motion of a part with these sensors at these times, and the number of its components, which the data choose if it
     /// is not given.
     pub fn motions(&self, sensors: &[usize], components: Option<usize>) -> (Vec<Column>, usize) {
-        let all: Vec<&[f32]> = self.tactile.series().collect();
-        let own = spread(sensors.len(), MAX_SENSORS).map(|at| all[sensors[at]]).collect::<Vec<_>>();
-        let roots = Roots::at(&own, spread(self.tactile.samples, TIMES), self.signed);
+        let own: Vec<usize> = spread(sensors.len(), MAX_SENSORS).map(|at| sensors[at]).collect();
+        let roots = Roots::new(self.roots.values.select_rows(&own), self.roots.signed);
         let Some(loadings) = roots.learn(components) else {
             return (vec![Column::zeros(); roots.felt.len()], 0);
         };
         let (rows, k) = (rows(&loadings), loadings.ncols());
-        let motion =
-            |t: usize| (0..TURNS).fold(Column::zeros(), |found, _| roots.motion_at(t, &rows, k, &found));
+        let motion = |t: usize| roots.motion(t, &rows, k);
         ((0..roots.felt.len()).into_par_iter().map(motion).collect(), k)
     }
 
     /// The share of a sensor's squares that c · w leaves with its best c, for w of some part.
     pub fn left(&self, sensor: usize, motions: &[Column]) -> f64 {
         let own = self.roots.values.row(sensor);
-        let predicted =
-            |c: &Column, motion: &Column| if self.signed { c.dot(motion) } else { c.dot(motion).max(0.0) };
         let mut c = Column::zeros();
         for _ in 0..TURNS {
             let (mut squares, mut products) = (Square::zeros(), Column::zeros());
@@ -126,8 +123,10 @@ impl<'a> Felt<'a> {
             }
             c = solve(squares, &products, MAX_COMPONENTS);
         }
-        let left =
-            motions.iter().zip(own.iter()).map(|(motion, root)| (root - predicted(&c, motion)).powi(2));
+        let left = motions
+            .iter()
+            .zip(own.iter())
+            .map(|(motion, root)| (root - self.roots.predicted(&c, motion)).powi(2));
         left.sum::<f64>() / own.norm_squared()
     }
 }
@@ -143,6 +142,8 @@ struct Roots {
     values: DMatrix<f64>,
     /// At each time, that from which on a sensor feels something.
     felt: Vec<f64>,
+    /// Whether negative pressures are felt.
+    signed: bool,
 }
 
 impl Roots {
@@ -150,14 +151,19 @@ impl Roots {
         let times: Vec<usize> = times.collect();
         let root = |pressure: f32| f64::from(pressure.abs()).sqrt().copysign(f64::from(pressure));
         let values = DMatrix::from_fn(series.len(), times.len(), |sensor, t| root(series[sensor][times[t]]));
+        Self::new(values, signed)
+    }
+
+    fn new(values: DMatrix<f64>, signed: bool) -> Self {
         let felt = |roots: DVectorView<f64>| {
             if signed { f64::NEG_INFINITY } else { (FELT * roots.max()).max(f64::MIN_POSITIVE) }
         };
-        Self { felt: values.column_iter().map(felt).collect(), values }
+        Self { felt: values.column_iter().map(felt).collect(), values, signed }
     }
 
-    fn signed(&self) -> bool {
-        self.felt.first() == Some(&f64::NEG_INFINITY)
+    /// What a sensor with this c feels of a motion.
+    fn predicted(&self, c: &Column, motion: &Column) -> f64 {
+        if self.signed { c.dot(motion) } else { c.dot(motion).max(0.0) }
     }
 
     /// c of each sensor, by rows, with orthonormal columns along the principal axes; `None` if nothing is felt.
@@ -165,7 +171,7 @@ impl Roots {
         if self.values.iter().all(|root| *root == 0.0) {
             return None;
         }
-        let unlike = if self.signed() { self.values.clone() } else { self.differences() };
+        let unlike = if self.signed { self.values.clone() } else { self.differences() };
         let axes = principal_axes(&unlike);
         let most = MAX_COMPONENTS.min(axes.ncols());
         let fit = |k: usize| self.fit(&unlike, axes.columns(0, k).into_owned());
@@ -199,7 +205,7 @@ impl Roots {
             let rows = rows(loadings);
             motions.iter().enumerate().map(|(t, motion)| self.motion_at(t, &rows, k, motion)).collect()
         };
-        for _ in 0..if self.signed() { 1 } else { ROUNDS } {
+        for _ in 0..if self.signed { 1 } else { ROUNDS } {
             motions = all_motions(&loadings, &motions);
             let (axes, turned) = orthonormal(&self.loadings_of(&motions, &rows(&loadings), k));
             loadings = axes;
@@ -208,10 +214,15 @@ impl Roots {
         let rows = rows(&loadings);
         let motions = all_motions(&loadings, &motions);
         let left = |(t, motion): (usize, &Column)| -> f64 {
-            let predicted = |c: &Column| if self.signed() { c.dot(motion) } else { c.dot(motion).max(0.0) };
-            rows.iter().zip(self.values.column(t).iter()).map(|(c, root)| (root - predicted(c)).powi(2)).sum()
+            let off = |(c, root): (&Column, &f64)| (root - self.predicted(c, motion)).powi(2);
+            rows.iter().zip(self.values.column(t).iter()).map(off).sum()
         };
         (loadings, motions.iter().enumerate().map(left).sum::<f64>() / self.values.norm_squared())
+    }
+
+    /// w at a time from given c.
+    fn motion(&self, t: usize, rows: &[Column], k: usize) -> Column {
+        (0..TURNS).fold(Column::zeros(), |found, _| self.motion_at(t, rows, k, &found))
     }
 
     /// w at a time by least squares over the sensors that feel something, and those that should by w as it was `before`.
