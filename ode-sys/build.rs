@@ -36,18 +36,25 @@ fn generate_bindings(ode: &pkg_config::Library) {
         "dThreadingAllocateSelfThreadedImplementation",
         "dThreadingImplementationGetFunctions",
         "dThreadingFreeImplementation",
-        "dMassSetCylinder",
+        "dMassSet(Cylinder|Capsule|Sphere|Box)",
         "dBodyCreate",
         "dBodyAddForce",
         "dBodySet(Mass|Position|Rotation)",
         "dBodyGet(Position|Rotation|LinearVel|AngularVel)",
-        "dRFromZAxis",
-        "dJointCreateUniversal",
+        "dJointCreate(Universal|Hinge|Ball|Fixed|AMotor)",
         "dJointAttach",
         "dJointGetType",
         "dJointSetUniversal(Anchor|Axis1|Axis2|Param)",
         "dJointGetUniversal(Anchor|Anchor2|Angles|Angle1Rate|Angle2Rate|Param)",
         "dJointAddUniversalTorques",
+        "dJointSetHinge(Anchor|Axis|Param)",
+        "dJointGetHinge(Anchor|Anchor2|Angle|AngleRate)",
+        "dJointAddHingeTorque",
+        "dJointSetBallAnchor",
+        "dJointGetBall(Anchor|Anchor2)",
+        "dJointSetFixed",
+        "dJointSetAMotor(Mode|NumAxes|Axis|Param)",
+        "dJointAddAMotorTorques",
         "ode_shim_.*",
     ];
     const TYPES: &[&str] = &["dJointType", "dMass", "dAllocateODEDataFlags"];
@@ -57,7 +64,7 @@ fn generate_bindings(ode: &pkg_config::Library) {
         .clang_args(ode.include_paths.iter().map(|path| format!("-I{}", path.display())))
         .rust_edition(bindgen::RustEdition::Edition2024)
         .prepend_enum_name(false)
-        .allowlist_var("dParam(Vel|FMax)[12]?")
+        .allowlist_var("dParam(Vel|FMax)[123]?|dAMotorUser")
         .allowlist_recursively(true)
         .generate_comments(false)
         .layout_tests(true);

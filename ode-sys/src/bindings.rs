@@ -117,6 +117,9 @@ pub const dParamSuspensionCFM3: _bindgen_ty_3 = 524;
 pub const dParamERP3: _bindgen_ty_3 = 525;
 pub const dParamGroup: _bindgen_ty_3 = 256;
 pub type _bindgen_ty_3 = ::std::os::raw::c_uint;
+pub const dAMotorUser: _bindgen_ty_4 = 0;
+pub const dAMotorEuler: _bindgen_ty_4 = 1;
+pub type _bindgen_ty_4 = ::std::os::raw::c_uint;
 unsafe extern "C" {
     pub fn dGetConfiguration() -> *const ::std::os::raw::c_char;
 }
@@ -302,7 +305,16 @@ const _: () = {
 };
 pub type dThreadingFunctionsInfo = dxThreadingFunctionsInfo;
 unsafe extern "C" {
-    pub fn dRFromZAxis(R: *mut dReal, ax: dReal, ay: dReal, az: dReal);
+    pub fn dMassSetSphere(arg1: *mut dMass, density: dReal, radius: dReal);
+}
+unsafe extern "C" {
+    pub fn dMassSetCapsule(
+        arg1: *mut dMass,
+        density: dReal,
+        direction: ::std::os::raw::c_int,
+        radius: dReal,
+        length: dReal,
+    );
 }
 unsafe extern "C" {
     pub fn dMassSetCylinder(
@@ -312,6 +324,9 @@ unsafe extern "C" {
         radius: dReal,
         length: dReal,
     );
+}
+unsafe extern "C" {
+    pub fn dMassSetBox(arg1: *mut dMass, density: dReal, lx: dReal, ly: dReal, lz: dReal);
 }
 #[repr(C)]
 #[derive(Debug, Copy, Clone)]
@@ -372,13 +387,40 @@ unsafe extern "C" {
     pub fn dBodyAddForce(arg1: dBodyID, fx: dReal, fy: dReal, fz: dReal);
 }
 unsafe extern "C" {
+    pub fn dJointCreateBall(arg1: dWorldID, arg2: dJointGroupID) -> dJointID;
+}
+unsafe extern "C" {
+    pub fn dJointCreateHinge(arg1: dWorldID, arg2: dJointGroupID) -> dJointID;
+}
+unsafe extern "C" {
     pub fn dJointCreateUniversal(arg1: dWorldID, arg2: dJointGroupID) -> dJointID;
+}
+unsafe extern "C" {
+    pub fn dJointCreateFixed(arg1: dWorldID, arg2: dJointGroupID) -> dJointID;
+}
+unsafe extern "C" {
+    pub fn dJointCreateAMotor(arg1: dWorldID, arg2: dJointGroupID) -> dJointID;
 }
 unsafe extern "C" {
     pub fn dJointAttach(arg1: dJointID, body1: dBodyID, body2: dBodyID);
 }
 unsafe extern "C" {
     pub fn dJointGetType(arg1: dJointID) -> dJointType;
+}
+unsafe extern "C" {
+    pub fn dJointSetBallAnchor(arg1: dJointID, x: dReal, y: dReal, z: dReal);
+}
+unsafe extern "C" {
+    pub fn dJointSetHingeAnchor(arg1: dJointID, x: dReal, y: dReal, z: dReal);
+}
+unsafe extern "C" {
+    pub fn dJointSetHingeAxis(arg1: dJointID, x: dReal, y: dReal, z: dReal);
+}
+unsafe extern "C" {
+    pub fn dJointSetHingeParam(arg1: dJointID, parameter: ::std::os::raw::c_int, value: dReal);
+}
+unsafe extern "C" {
+    pub fn dJointAddHingeTorque(joint: dJointID, torque: dReal);
 }
 unsafe extern "C" {
     pub fn dJointSetUniversalAnchor(arg1: dJointID, x: dReal, y: dReal, z: dReal);
@@ -394,6 +436,49 @@ unsafe extern "C" {
 }
 unsafe extern "C" {
     pub fn dJointAddUniversalTorques(joint: dJointID, torque1: dReal, torque2: dReal);
+}
+unsafe extern "C" {
+    pub fn dJointSetFixed(arg1: dJointID);
+}
+unsafe extern "C" {
+    pub fn dJointSetAMotorNumAxes(arg1: dJointID, num: ::std::os::raw::c_int);
+}
+unsafe extern "C" {
+    pub fn dJointSetAMotorAxis(
+        arg1: dJointID,
+        anum: ::std::os::raw::c_int,
+        rel: ::std::os::raw::c_int,
+        x: dReal,
+        y: dReal,
+        z: dReal,
+    );
+}
+unsafe extern "C" {
+    pub fn dJointSetAMotorParam(arg1: dJointID, parameter: ::std::os::raw::c_int, value: dReal);
+}
+unsafe extern "C" {
+    pub fn dJointSetAMotorMode(arg1: dJointID, mode: ::std::os::raw::c_int);
+}
+unsafe extern "C" {
+    pub fn dJointAddAMotorTorques(arg1: dJointID, torque1: dReal, torque2: dReal, torque3: dReal);
+}
+unsafe extern "C" {
+    pub fn dJointGetBallAnchor(arg1: dJointID, result: *mut dReal);
+}
+unsafe extern "C" {
+    pub fn dJointGetBallAnchor2(arg1: dJointID, result: *mut dReal);
+}
+unsafe extern "C" {
+    pub fn dJointGetHingeAnchor(arg1: dJointID, result: *mut dReal);
+}
+unsafe extern "C" {
+    pub fn dJointGetHingeAnchor2(arg1: dJointID, result: *mut dReal);
+}
+unsafe extern "C" {
+    pub fn dJointGetHingeAngle(arg1: dJointID) -> dReal;
+}
+unsafe extern "C" {
+    pub fn dJointGetHingeAngleRate(arg1: dJointID) -> dReal;
 }
 unsafe extern "C" {
     pub fn dJointGetUniversalAnchor(arg1: dJointID, result: *mut dReal);

@@ -5,6 +5,7 @@ use std::process::ExitCode;
 
 use anyhow::{Context, Result, ensure};
 use clap::Args;
+use serde::Serialize;
 
 use super::options::{SettingsAndSeed, SettingsFile, TruthFiles, choice, paper, set, with_default};
 use super::output::say;
@@ -13,6 +14,7 @@ use crate::analysis::consensus::named_after;
 use crate::analysis::posterior::Posterior;
 use crate::analysis::statistics::{Estimate, mean, rate};
 use crate::experiments::progress::progress;
+use crate::files::body::{NamedBody, read_body};
 use crate::files::{npy, prepare_folder, tables};
 use crate::numerics::rng::stream;
 use crate::pipeline::map_stream;
@@ -29,15 +31,24 @@ use crate::stages::simulate::simulate;
 /// Stages 1 and 2: moves a body at random in a fluid and records the pressure on its sensors.
 ///
 /// Writes into DIR: tactile.npy (float32, T x M, Pa), labels.csv (sensor,part), tree.csv (child,parent) and
-/// joint-angles.csv (time_s, then two angles for each joint in rad; T + 1 rows). T is the number of samples, M of
-/// sensors.
+/// joint-angles.csv (time_s, then the angles of each joint in rad; T + 1 rows); with --body also names.csv (part,name). T
+/// is the number of samples, M of sensors.
 #[derive(Args)]
 pub struct Simulate {
     #[command(flatten)]
     common: SettingsAndSeed,
+    /// Body to simulate, in place of that of the settings: a .toml file as in the folder bodies, which has some
+    #[arg(long, value_name = "FILE")]
+    body: Option<PathBuf>,
     /// Folder to write to
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
+}
+
+#[derive(Serialize)]
+struct NameRow {
+    part: usize,
+    name: String,
 }
 
 impl Simulate {
@@ -45,22 +56,29 @@ impl Simulate {
     pub fn run(self) -> Result<ExitCode> {
         let (settings, out) = (self.common.load(false)?, &self.out);
         let Settings { agent, skin, motion, physics, sense: tactile_sense, experiment, .. } = &settings;
+        let body = self.body.as_deref().map(read_body).transpose()?;
+        let names = body.as_ref().map(NamedBody::rigid_names);
+        let agent = body.map_or_else(|| Agent::new(agent, skin), |body| body.agent);
+        settings.check_times(agent.sites.len())?;
         prepare_folder(out)?;
-        let agent = Agent::new(agent, skin);
         let interval = tactile_sense.interval;
         let bar = progress(physics.samples(interval) as u64 + 1, "simulate".to_owned());
         let mut rng = stream(experiment.seed, 1, "motion", 0);
         let trajectory = simulate(&agent, motion, physics, interval, &mut rng, &|| bar.inc(1))?;
         bar.finish_and_clear();
         tables::write_truth(&out.join("labels.csv"), &out.join("tree.csv"), &agent.truth())?;
-        tables::write_joint_angles(&out.join("joint-angles.csv"), &trajectory, interval)?;
+        if let Some(names) = names {
+            let rows = names.into_iter().enumerate().map(|(part, name)| NameRow { part, name });
+            tables::write_rows(&out.join("names.csv"), rows)?;
+        }
+        tables::write_joint_angles(&out.join("joint-angles.csv"), &agent.joints, &trajectory, interval)?;
         let tactile = sense(&agent, &trajectory, tactile_sense);
         npy::write_tactile(&out.join("tactile.npy"), &tactile)?;
         say(format!(
             "{} samples of {} sensors on {} parts, seed {}, in {}",
             tactile.samples,
             tactile.sensors(),
-            agent.parts.len(),
+            agent.rigid_bodies().into_iter().max().map_or(0, |last| last + 1),
             experiment.seed,
             out.display()
         ))?;

@@ -1,5 +1,6 @@
 //! Read and write files that NumPy and a spreadsheet open, and the folders of finished runs.
 
+pub mod body;
 pub(crate) mod checkpoint;
 mod error;
 mod hash;

@@ -8,6 +8,7 @@ use serde_json::Value;
 
 use super::error::FileError;
 use super::whole::write_whole;
+use crate::stages::agent::Joint;
 use crate::stages::evaluate::{Score, parts};
 use crate::stages::schema::Draw;
 use crate::stages::schema::Keep;
@@ -169,17 +170,27 @@ fn plain(error: &csv::Error) -> String {
     }
 }
 
-/// Writes a row for each of the T + 1 samples: `time_s`, then both angles of each joint in rad.
-pub fn write_joint_angles(path: &Path, trajectory: &Trajectory, interval: f64) -> Result<(), FileError> {
+/// Writes a row for each of the T + 1 samples: `time_s`, then the angles of each joint in rad.
+pub fn write_joint_angles(
+    path: &Path,
+    joints: &[Joint],
+    trajectory: &Trajectory,
+    interval: f64,
+) -> Result<(), FileError> {
     write_whole(path, |file| {
         let mut writer = csv::Writer::from_writer(file);
-        let names = (1..=trajectory.joints)
-            .flat_map(|joint| [1, 2].map(|axis| format!("joint{joint}_angle{axis}_rad")));
+        let name = |joint: usize, axis: usize| format!("joint{}_angle{}_rad", joint + 1, axis + 1);
+        let freedom = |joint: usize| joints[joint].freedom.angles();
+        let names =
+            (0..joints.len()).flat_map(|joint| (0..freedom(joint)).map(move |axis| name(joint, axis)));
         writer.write_record(std::iter::once("time_s".to_owned()).chain(names))?;
-        for (sample, angles) in trajectory.angles.chunks_exact(trajectory.joints).enumerate() {
+        for sample in 0..=trajectory.samples() {
             writer.write_field(format!("{:.6}", sample as f64 * interval))?;
-            for angle in angles.as_flattened() {
-                writer.write_field(format!("{angle:.6}"))?;
+            let angles = &trajectory.angles[sample * joints.len()..][..joints.len()];
+            for (joint, angles) in angles.iter().enumerate() {
+                for angle in &angles[..freedom(joint)] {
+                    writer.write_field(format!("{angle:.6}"))?;
+                }
             }
             writer.write_record(None::<&[u8]>)?;
         }

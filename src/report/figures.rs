@@ -53,7 +53,7 @@ impl<'a> Figures<'a> {
             AgentRow { part, kind, x_m, y_m, z_m }
         };
         let ends = agent.parts.iter().zip(poses).enumerate().flat_map(|(at, (part, pose))| {
-            let end = |side: f64| pose.place([0.0, 0.0, side * part.length / 2.0]);
+            let end = |side: f64| pose.place([0.0, 0.0, side * part.shape.half_length()]);
             [row(at, AgentPoint::ProximalEnd, end(-1.0)), row(at, AgentPoint::DistalEnd, end(1.0))]
         });
         let joints = agent.joints.iter().map(|joint| row(joint.child, AgentPoint::Joint, joint.anchor));

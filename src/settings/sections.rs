@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::error::SettingsError;
 use super::experiment::{ExperimentSettings, rising};
 use crate::numerics::range::{Checked, check};
-use crate::stages::agent::{Geometry, PARTS, Skin};
+use crate::stages::agent::{Geometry, Skin};
 use crate::stages::baselines::Baselines;
 use crate::stages::body_map::Map;
 use crate::stages::distance::MAX_SENSORS;
@@ -56,7 +56,7 @@ impl Settings {
         self.motion.check()?;
         self.physics.check()?;
         self.sense.check()?;
-        self.check_times()?;
+        self.check_times(self.sensors())?;
         self.quantise.check()?;
         self.map.check()?;
         self.schema.check(self.sensors())?;
@@ -70,7 +70,7 @@ impl Settings {
 
     /// M, the number of sensors on the body.
     pub fn sensors(&self) -> usize {
-        PARTS.saturating_mul(self.skin.sensors_per_part())
+        self.agent.parts().saturating_mul(self.skin.sensors_per_part())
     }
 
     /// Checks that the distances between all sensors fit the memory.
@@ -79,14 +79,17 @@ impl Settings {
         check(
             "skin.around * skin.along + skin.caps",
             each,
-            each <= MAX_SENSORS / PARTS,
+            each <= MAX_SENSORS / self.agent.parts(),
             "at most 4000, which makes 20000 sensors in all",
         )
     }
 
     /// Checks that samples are whole steps apart, and not too many to keep or to wait for: 2 billion pressures are 8 GB,
     /// 20 million samples 13 GB of poses, and a billion steps take hours.
-    fn check_times(&self) -> Checked {
+    ///
+    /// # Errors
+    /// The first setting that is outside its range for a body with so many sensors.
+    pub fn check_times(&self, sensors: usize) -> Checked {
         let (interval, step, duration) = (self.sense.interval, self.physics.step, self.physics.duration);
         let ratio = interval / step;
         let whole = ratio >= 0.5 && (ratio - ratio.round()).abs() < 1e-6 * ratio;
@@ -96,7 +99,7 @@ impl Settings {
             "physics.duration",
             duration,
             (1.0 - 1e-9..=2e7).contains(&samples)
-                && samples * self.sensors() as f64 <= 2e9
+                && samples * sensors as f64 <= 2e9
                 && steps <= 1e9
                 && duration <= 1e9,
             "at least sense.interval and at most 1000000000, with at most 20 million samples, 2 billion pressures and \

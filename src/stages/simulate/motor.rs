@@ -7,35 +7,39 @@
 
 use std::f64::consts::{PI, TAU};
 
+use nalgebra::Rotation3;
 use rand::RngExt;
 
 use super::settings::{AngleError, Controller, Motion, Targets};
-use super::world::World;
+use super::world::{World, ball_error};
 use crate::numerics::rng::Stream;
+use crate::stages::agent::{Freedom, Joint, Vector3};
 
 /// The state of every joint's motor.
 #[derive(Debug, Clone)]
 pub struct Motor {
-    /// Targets of both axes, rad, of a joint that moves; `None` where it is locked.
-    targets: Vec<Option<[f64; 2]>>,
+    /// How each joint turns.
+    freedoms: Vec<Freedom>,
+    /// Targets of the angles, rad, of a joint that moves; `None` where it is locked.
+    targets: Vec<Option<Vector3>>,
 }
 
 impl Motor {
-    /// Motors of `joints` joints, all locked, as a fresh [`World`] has them.
-    pub fn new(joints: usize) -> Self {
-        Self { targets: vec![None; joints] }
+    /// Motors of joints that are all locked, as a fresh [`World`] has them.
+    pub fn new(joints: &[Joint]) -> Self {
+        let freedoms = joints.iter().map(|joint| joint.freedom).collect();
+        Self { freedoms, targets: vec![None; joints.len()] }
     }
 
-    /// Draws for each joint whether it moves in the epoch that begins, and where to.
+    /// Draws for each joint whether it moves in the epoch that begins, and where to. Nothing is drawn for one that is fixed.
     pub fn draw_targets(&mut self, world: &mut World, motion: &Motion, rng: &mut Stream) {
-        for (joint, target) in self.targets.iter_mut().enumerate() {
-            *target = rng.random_bool(1.0 - motion.coordination).then(|| {
-                let mut angle = || rng.random_range(-PI..=PI);
-                match motion.targets {
-                    Targets::Each => [angle(), angle()],
-                    Targets::Shared => [angle(); 2],
-                }
-            });
+        for (joint, (freedom, target)) in self.freedoms.iter().zip(&mut self.targets).enumerate() {
+            if *freedom == Freedom::Fixed {
+                continue;
+            }
+            *target = rng
+                .random_bool(1.0 - motion.coordination)
+                .then(|| draw_target(freedom, motion.targets, &mut || rng.random_range(-PI..=PI)));
             match target {
                 Some(_) => world.unlock(joint),
                 None => world.lock(joint),
@@ -45,15 +49,18 @@ impl Motor {
 
     /// Drives each axis that moves towards its target for the next step.
     pub fn apply(&self, world: &mut World, motion: &Motion) {
-        for (joint, target) in self.targets.iter().enumerate() {
+        for (joint, (freedom, target)) in self.freedoms.iter().zip(&self.targets).enumerate() {
             let Some(target) = target else { continue };
             let angles = world.angles(joint);
-            let errors = [0, 1].map(|axis| angle_error(target[axis], angles[axis], motion.error));
+            let errors = match freedom {
+                Freedom::Ball => ball_error(*target, angles),
+                _ => [0, 1, 2].map(|axis| angle_error(target[axis], angles[axis], motion.error)),
+            };
             match motion.controller {
                 Controller::Torque => {
                     let rates = world.rates(joint);
                     let torque = |axis| motion.stiffness * errors[axis] - motion.damping * rates[axis];
-                    world.apply_torques(joint, [0, 1].map(torque));
+                    world.apply_torques(joint, [0, 1, 2].map(torque));
                 }
                 Controller::Servo => {
                     world.set_motor(
@@ -70,6 +77,20 @@ impl Motor {
     #[cfg(test)]
     pub fn is_locked(&self, joint: usize) -> bool {
         self.targets[joint].is_none()
+    }
+}
+
+/// Random angles of a joint; a ball joint turns by them about x, y and z, one after the other.
+fn draw_target(freedom: &Freedom, targets: Targets, angle: &mut dyn FnMut() -> f64) -> Vector3 {
+    let mut drawn = [0.0; 3];
+    let own = &mut drawn[..freedom.angles()];
+    match targets {
+        Targets::Each => own.fill_with(angle),
+        Targets::Shared => own.fill(angle()),
+    }
+    match freedom {
+        Freedom::Ball => Rotation3::from_euler_angles(drawn[0], drawn[1], drawn[2]).scaled_axis().into(),
+        _ => drawn,
     }
 }
 
@@ -94,7 +115,7 @@ mod tests {
         let agent = scene.agent();
         let mut drawn = |targets| {
             scene.motion.targets = targets;
-            let mut motor = Motor::new(agent.joints.len());
+            let mut motor = Motor::new(&agent.joints);
             let rng = &mut stream(1, 1, "motion", 0);
             motor.draw_targets(&mut World::new(&agent, &scene.physics), &scene.motion, rng);
             (motor.targets.iter().map(|target| target.expect("p = 0")).collect::<Vec<_>>(), rng.clone())
@@ -105,7 +126,7 @@ mod tests {
             let target = |_| {
                 rng.random_bool(1.0);
                 let first = rng.random_range(-PI..=PI);
-                [first, if shared { first } else { rng.random_range(-PI..=PI) }]
+                [first, if shared { first } else { rng.random_range(-PI..=PI) }, 0.0]
             };
             (agent.joints.iter().map(target).collect::<Vec<_>>(), rng)
         };

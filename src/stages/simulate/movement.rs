@@ -6,7 +6,7 @@ use super::motor::Motor;
 use super::settings::{Motion, Physics};
 use super::world::{Pose, Unstable, World};
 use crate::numerics::rng::Stream;
-use crate::stages::agent::Agent;
+use crate::stages::agent::{Agent, Vector3};
 
 /// The movement of an agent, sampled every Δt.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -17,8 +17,8 @@ pub struct Trajectory {
     pub joints: usize,
     /// (T + 1) × parts, by time: the pose of each part at 0, Δt, 2Δt, …
     pub poses: Vec<Pose>,
-    /// (T + 1) × joints, by time: both angles of each joint, rad in [−π, π].
-    pub angles: Vec<[f64; 2]>,
+    /// (T + 1) × joints, by time: the angles of each joint, rad in [−π, π]; those that it does not have are 0.
+    pub angles: Vec<Vector3>,
     /// How well the physics step resolved it.
     pub resolution: Resolution,
 }
@@ -91,7 +91,7 @@ pub fn simulate(
     let (parts, joints) = (agent.parts.len(), agent.joints.len());
     let (samples, steps_per_sample) = (physics.samples(interval), physics.steps_per_sample(interval));
     let mut world = World::new(agent, physics);
-    let mut motor = Motor::new(joints);
+    let mut motor = Motor::new(&agent.joints);
     let mut trajectory = Trajectory {
         parts,
         joints,

@@ -1,4 +1,4 @@
-//! Simulate the agent in Open Dynamics Engine (section 5.1). This is the only file with `unsafe` code.
+//! Simulate the agent in Open Dynamics Engine (section 5.1). This and its joints are the only files with `unsafe` code.
 //!
 //! ODE's assertions end the process, so everything handed to it is checked before, and the state of every
 //! body after each step. Each world has its own step threading, because two worlds that share ODE's
@@ -7,13 +7,17 @@
 use std::f64::consts::TAU;
 use std::ffi::CStr;
 use std::mem::MaybeUninit;
-use std::ptr::null_mut;
 use std::sync::Once;
 
 use ode_sys as ode;
 
+use self::joints::EngineJoint;
 use super::settings::Physics;
-use crate::stages::agent::{Agent, Joint, Part, Vector3};
+use crate::stages::agent::{Agent, Part, Shape, Vector3};
+
+mod joints;
+
+pub use self::joints::ball_error;
 
 /// Where a part is and how it is turned.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -36,7 +40,7 @@ impl Pose {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error(
     "{event} at step {step} (t = {time:.3} s): the simulation has become unstable; lower motion.stiffness, \
-     motion.damping, motion.servo_gain or physics.step, or enlarge agent.part_radius"
+     motion.damping, motion.servo_gain or physics.step, or make the parts thicker"
 )]
 pub struct Unstable {
     /// What was seen.
@@ -52,7 +56,7 @@ pub struct World {
     world: ode::dWorldID,
     threading: ode::dThreadingImplementationID,
     bodies: Vec<ode::dBodyID>,
-    joints: Vec<ode::dJointID>,
+    joints: Vec<EngineJoint>,
     step: f64,
     steps: u64,
     /// Fastest rotation that is not called unstable, rad/s.
@@ -104,14 +108,26 @@ fn last_message() -> String {
 unsafe fn make_body(world: ode::dWorldID, part: &Part) -> ode::dBodyID {
     const ALONG_Z: i32 = 3;
     let mut mass = MaybeUninit::<ode::dMass>::uninit();
+    let at = mass.as_mut_ptr();
     let mut rotation: ode::dMatrix3 = [0.0; 12];
-    // SAFETY: as the caller promises; the mass is written by dMassSetCylinder before it is read, and positive, as
-    // the ranges of lengths and density make it.
+    for (row, numbers) in rotation.chunks_exact_mut(4).zip(part.rotation) {
+        row[..3].copy_from_slice(&numbers);
+    }
+    // SAFETY: as the caller promises; the mass is written before it is read, and positive, as the ranges of lengths and
+    // density make it.
     unsafe {
-        ode::dMassSetCylinder(mass.as_mut_ptr(), part.density, ALONG_Z, part.radius, part.length);
+        match part.shape {
+            Shape::Cylinder { radius, length } => {
+                ode::dMassSetCylinder(at, part.density, ALONG_Z, radius, length);
+            }
+            Shape::Capsule { radius, length } => {
+                ode::dMassSetCapsule(at, part.density, ALONG_Z, radius, length);
+            }
+            Shape::Sphere { radius } => ode::dMassSetSphere(at, part.density, radius),
+            Shape::Box { sides: [x, y, z] } => ode::dMassSetBox(at, part.density, x, y, z),
+        }
         let mass = mass.assume_init();
         let body = ode::dBodyCreate(world);
-        ode::dRFromZAxis(rotation.as_mut_ptr(), part.axis[0], part.axis[1], part.axis[2]);
         ode::dBodySetMass(body, &mass);
         ode::dBodySetRotation(body, rotation.as_ptr());
         ode::dBodySetPosition(body, part.centre[0], part.centre[1], part.centre[2]);
@@ -119,35 +135,11 @@ unsafe fn make_body(world: ode::dWorldID, part: &Part) -> ode::dBodyID {
     }
 }
 
-/// Makes a universal joint between two bodies, in the pose that they have.
-///
-/// # Safety
-/// The world and its bodies must be live, and there must be one for each part of the joint.
-unsafe fn make_joint(world: ode::dWorldID, bodies: &[ode::dBodyID], joint: &Joint) -> ode::dJointID {
-    let [anchor, first, second] = [joint.anchor, joint.axes[0], joint.axes[1]];
-    let third = [1, 2, 0].map(|i| {
-        let j = (i + 1) % 3;
-        first[i] * second[j] - first[j] * second[i]
-    });
-    // SAFETY: as the caller promises. Attach first: ODE ignores the anchor and axes of a joint without
-    // bodies. The third direction is for a moment only: whenever an axis is set, ODE relates it to the other, and
-    // reads what it never wrote if that is parallel, as the one it begins with is to the first.
-    unsafe {
-        let id = ode::dJointCreateUniversal(world, null_mut());
-        ode::dJointAttach(id, bodies[joint.parent], bodies[joint.child]);
-        ode::dJointSetUniversalAnchor(id, anchor[0], anchor[1], anchor[2]);
-        ode::dJointSetUniversalAxis1(id, third[0], third[1], third[2]);
-        ode::dJointSetUniversalAxis2(id, second[0], second[1], second[2]);
-        ode::dJointSetUniversalAxis1(id, first[0], first[1], first[2]);
-        id
-    }
-}
-
 impl World {
     /// Puts `agent` into a fresh world with ODE's default parameters.
     ///
-    /// Lengths, densities and the step must be in the ranges that [`crate::stages::agent::Geometry::check`] and
-    /// [`Physics::check`] state: that keeps out of ODE what it would abort on.
+    /// Lengths, densities and the step must be in the ranges that [`crate::numerics::range`] and [`Physics::check`] state: that
+    /// keeps out of ODE what it would abort on.
     pub fn new(agent: &Agent, physics: &Physics) -> Self {
         initialise();
         // SAFETY: handles are used only while `self` owns them.
@@ -161,7 +153,7 @@ impl World {
             );
 
             let bodies: Vec<_> = agent.parts.iter().map(|part| make_body(world, part)).collect();
-            let joints: Vec<_> = agent.joints.iter().map(|joint| make_joint(world, &bodies, joint)).collect();
+            let joints = agent.joints.iter().map(|joint| EngineJoint::new(world, &bodies, joint)).collect();
             let mut world = Self {
                 world,
                 threading,
@@ -234,68 +226,42 @@ impl World {
         Pose { position, rotation: rows.map(|[x, y, z, _]| [x, y, z]) }
     }
 
-    /// Both angles of a joint, rad in [−π, π]: the parent relative to the child, 0 in the rest pose.
-    pub fn angles(&self, joint: usize) -> [f64; 2] {
-        let (mut first, mut second) = (0.0, 0.0);
-        // SAFETY: the joint is live and universal, and both angles are written where they may be.
-        unsafe { ode::dJointGetUniversalAngles(self.joints[joint], &mut first, &mut second) }
-        [first, second]
+    /// The angles of a joint, rad in [−π, π]: the parent relative to the child, 0 in the rest pose. Those that it does not have
+    /// are 0; of a ball joint, they are the vector of that rotation.
+    pub fn angles(&self, joint: usize) -> Vector3 {
+        self.joints[joint].angles()
     }
 
-    /// Rates of both angles, rad/s.
-    pub fn rates(&self, joint: usize) -> [f64; 2] {
-        // SAFETY: the joint is live and universal.
-        unsafe {
-            [
-                ode::dJointGetUniversalAngle1Rate(self.joints[joint]),
-                ode::dJointGetUniversalAngle2Rate(self.joints[joint]),
-            ]
-        }
+    /// Rates of its angles, rad/s; of a ball joint, about the axes of the parent's frame.
+    pub fn rates(&self, joint: usize) -> Vector3 {
+        self.joints[joint].rates()
     }
 
-    /// Applies torques about both axes of a joint for the next step, N·m.
-    pub fn apply_torques(&mut self, joint: usize, torques: [f64; 2]) {
+    /// Applies torques about the axes of a joint for the next step, N·m.
+    pub fn apply_torques(&mut self, joint: usize, torques: Vector3) {
         debug_assert!(torques.iter().all(|torque| torque.is_finite()));
-        // SAFETY: the joint is live and universal; ODE copes with any finite torque, and what a large one
-        // does is seen after the step.
-        unsafe { ode::dJointAddUniversalTorques(self.joints[joint], torques[0], torques[1]) }
+        self.joints[joint].apply_torques(torques);
     }
 
     /// Holds a joint at its present angles by a motor of zero velocity and unlimited torque.
     pub fn lock(&mut self, joint: usize) {
-        self.set_motor(joint, [0.0; 2], f64::INFINITY);
+        self.set_motor(joint, [0.0; 3], f64::INFINITY);
     }
 
     /// Lets a joint turn freely.
     pub fn unlock(&mut self, joint: usize) {
-        self.set_motor(joint, [0.0; 2], 0.0);
+        self.set_motor(joint, [0.0; 3], 0.0);
     }
 
-    /// Sets the motors of both axes of a joint: the velocity that each strives for, rad/s, and its largest torque, N·m.
-    pub fn set_motor(&mut self, joint: usize, velocities: [f64; 2], torque: f64) {
+    /// Sets the motors of a joint's axes: the velocity that each strives for, rad/s, and its largest torque, N·m.
+    pub fn set_motor(&mut self, joint: usize, velocities: Vector3, torque: f64) {
         debug_assert!(velocities.iter().all(|velocity| velocity.is_finite()));
-        let parameters = [(ode::dParamVel1, ode::dParamFMax1), (ode::dParamVel2, ode::dParamFMax2)];
-        for ((velocity, limit), value) in parameters.into_iter().zip(velocities) {
-            // SAFETY: the joint is live and universal, and both parameters are its motors'.
-            unsafe {
-                ode::dJointSetUniversalParam(self.joints[joint], velocity as i32, value);
-                ode::dJointSetUniversalParam(self.joints[joint], limit as i32, torque);
-            }
-        }
+        self.joints[joint].set_motor(velocities, torque);
     }
 
     /// Largest distance between the two places that a joint's parts have its anchor at, m; 0 if no joint comes apart.
     pub fn anchor_separation(&self) -> f64 {
-        let separation = |joint: &ode::dJointID| {
-            let (mut first, mut second): (ode::dVector3, ode::dVector3) = ([0.0; 4], [0.0; 4]);
-            // SAFETY: the joint is live and universal, and both vectors hold the three numbers written.
-            unsafe {
-                ode::dJointGetUniversalAnchor(*joint, first.as_mut_ptr());
-                ode::dJointGetUniversalAnchor2(*joint, second.as_mut_ptr());
-            }
-            (0..3).map(|i| (first[i] - second[i]).powi(2)).sum::<f64>().sqrt()
-        };
-        self.joints.iter().map(separation).fold(0.0, f64::max)
+        self.joints.iter().map(EngineJoint::separation).fold(0.0, f64::max)
     }
 
     /// How far the fastest part turns in a step at its rate after the last one, in turns.

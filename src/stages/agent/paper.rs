@@ -1,21 +1,14 @@
-//! Build the body from its settings: parts, joints and tactile sensors, with the true part of each sensor and the true
-//! tree.
+//! The body of the paper (section 5.1 and figure 4): five cylinders, four universal joints, 840 sensors.
 //!
-//! Section 5.1 and figure 4: five cylinders, four universal joints, 840 sensors. The figure is all that
-//! the paper says of the geometry, so the morphology and every length are settings (ours).
+//! The figure is all that the paper says of the geometry, so the morphology and every length are settings (ours).
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI, TAU};
 
 use serde::{Deserialize, Serialize};
 
+use super::body::{Agent, Freedom, Joint, Part, Site, across};
+use super::shape::{Shape, Vector3};
 use crate::numerics::range::{Checked, check, count, length, moderate};
-use crate::stages::tree::Truth;
-
-/// A position or direction in space.
-pub type Vector3 = [f64; 3];
-
-/// Number of parts of every body.
-pub const PARTS: usize = 5;
 
 /// How the parts are joined.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -60,6 +53,11 @@ pub struct Skin {
 }
 
 impl Geometry {
+    /// Number of parts.
+    pub fn parts(&self) -> usize {
+        1 + limbs(self.morphology).len()
+    }
+
     /// Checks the range of each setting.
     ///
     /// # Errors
@@ -91,61 +89,11 @@ impl Skin {
     }
 }
 
-/// A solid cylinder, in the rest pose.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Part {
-    /// Centre of mass, m.
-    pub centre: Vector3,
-    /// Unit vector along the cylinder, from its proximal to its distal end.
-    pub axis: Vector3,
-    /// Length, m.
-    pub length: f64,
-    /// Radius, m.
-    pub radius: f64,
-    /// Density, kg/m³.
-    pub density: f64,
-}
-
-/// A universal joint, in the rest pose.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Joint {
-    /// Index of the part that carries the child.
-    pub parent: usize,
-    /// Index of the part that is carried.
-    pub child: usize,
-    /// Where both parts meet, m: the middle of the gap between their ends.
-    pub anchor: Vector3,
-    /// The two axes of rotation, at right angles to each other and to the child's own axis.
-    pub axes: [Vector3; 2],
-}
-
-/// A tactile sensor in the frame of its part, whose z axis is the cylinder's.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Site {
-    /// The part it sits on.
-    pub part: usize,
-    /// Position, m.
-    pub position: Vector3,
-    /// Outward unit normal n_i of the surface.
-    pub normal: Vector3,
-}
-
-/// The body and its skin.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Agent {
-    /// Parts; part 0 is the root of the tree.
-    pub parts: Vec<Part>,
-    /// Joints; joint j carries part j + 1.
-    pub joints: Vec<Joint>,
-    /// Sensors, those of part 0 first.
-    pub sites: Vec<Site>,
-}
-
 /// A limb: the part that carries it, on which end (true: the distal one), and its direction in the plane
 /// of the body, as an angle to the x axis.
 type Limb = (usize, bool, f64);
 
-fn limbs(morphology: Morphology) -> [Limb; PARTS - 1] {
+fn limbs(morphology: Morphology) -> [Limb; 4] {
     match morphology {
         Morphology::Chain => [(0, true, 0.0), (1, true, 0.0), (2, true, 0.0), (3, true, 0.0)],
         Morphology::Star => [
@@ -166,49 +114,33 @@ impl Agent {
             |from: Vector3, axis: Vector3, distance: f64| [0, 1, 2].map(|i| from[i] + distance * axis[i]);
         let half = geometry.part_length / 2.0;
         let cylinder = |centre, axis| Part {
+            shape: Shape::Cylinder { radius: geometry.part_radius, length: geometry.part_length },
             centre,
-            axis,
-            length: geometry.part_length,
-            radius: geometry.part_radius,
+            rotation: across(axis),
             density: geometry.density,
         };
         let mut parts = vec![cylinder([0.0; 3], [1.0, 0.0, 0.0])];
         let mut joints = Vec::new();
         for (parent, distal, angle) in limbs(geometry.morphology) {
             let carrier = &parts[parent];
-            let end = along(carrier.centre, carrier.axis, if distal { half } else { -half });
+            let end = along(carrier.centre, carrier.axis(), if distal { half } else { -half });
             let axis = [angle.cos(), angle.sin(), 0.0];
             joints.push(Joint {
                 parent,
                 child: parts.len(),
                 anchor: along(end, axis, geometry.gap / 2.0),
-                axes: [[0.0, 0.0, 1.0], [-axis[1], axis[0], 0.0]],
+                freedom: Freedom::Universal([[0.0, 0.0, 1.0], [-axis[1], axis[0], 0.0]]),
             });
             parts.push(cylinder(along(end, axis, geometry.gap + half), axis));
         }
-        let sites = parts.iter().enumerate().flat_map(|(at, part)| sites(at, part, skin)).collect();
+        let sites = (0..parts.len()).flat_map(|part| sites(part, geometry, skin)).collect();
         Self { parts, joints, sites }
-    }
-
-    /// The true part of each sensor.
-    pub fn labels(&self) -> Vec<usize> {
-        self.sites.iter().map(|site| site.part).collect()
-    }
-
-    /// The true tree as (child, parent) pairs.
-    pub fn tree(&self) -> Vec<(usize, usize)> {
-        self.joints.iter().map(|joint| (joint.child, joint.parent)).collect()
-    }
-
-    /// The true part of each sensor and the true tree.
-    pub fn truth(&self) -> Truth {
-        Truth { labels: self.labels(), tree: self.tree() }
     }
 }
 
 /// The sensors of one part: rings on the side, evenly spaced, then one ring on each cap at two thirds of
 /// the radius (the mean radius of a disc).
-fn sites(part: usize, cylinder: &Part, skin: &Skin) -> Vec<Site> {
+fn sites(part: usize, geometry: &Geometry, skin: &Skin) -> Vec<Site> {
     let ring = |count: usize| {
         (0..count).map(move |i| {
             let (sine, cosine) = (TAU * i as f64 / count as f64).sin_cos();
@@ -217,7 +149,7 @@ fn sites(part: usize, cylinder: &Part, skin: &Skin) -> Vec<Site> {
     };
     let on_ring =
         |direction: Vector3, radius: f64, height: f64| [radius * direction[0], radius * direction[1], height];
-    let (length, radius) = (cylinder.length, cylinder.radius);
+    let (length, radius) = (geometry.part_length, geometry.part_radius);
     let mut sites = Vec::with_capacity(skin.sensors_per_part());
     for row in 0..skin.along {
         let height = length * ((row as f64 + 0.5) / skin.along as f64 - 0.5);
@@ -280,11 +212,12 @@ mod tests {
             let agent = agent(morphology);
             for joint in &agent.joints {
                 let child = &agent.parts[joint.child];
+                let Freedom::Universal(axes) = joint.freedom else { panic!("{joint:?}") };
                 let dot = |a: Vector3, b: Vector3| (0..3).map(|i| a[i] * b[i]).sum::<f64>();
                 let offset = [0, 1, 2].map(|i| child.centre[i] - joint.anchor[i]);
-                assert!((dot(offset, child.axis) - reach).abs() < 1e-12, "{morphology:?}");
-                assert!(dot(joint.axes[0], joint.axes[1]).abs() < 1e-12);
-                assert!(joint.axes.iter().all(|&axis| dot(axis, child.axis).abs() < 1e-12));
+                assert!((dot(offset, child.axis()) - reach).abs() < 1e-12, "{morphology:?}");
+                assert!(dot(axes[0], axes[1]).abs() < 1e-12);
+                assert!(axes.iter().all(|&axis| dot(axis, child.axis()).abs() < 1e-12));
             }
         }
     }

@@ -1,0 +1,371 @@
+//! Read and write the description of a body: a TOML file with a table for each part.
+//!
+//! All places and directions are in one frame, in the rest pose; `docs/bodies.md` explains every key.
+
+use std::path::Path;
+
+use nalgebra::{Quaternion, UnitQuaternion, Vector3 as Column};
+use serde::{Deserialize, Serialize};
+
+use super::error::FileError;
+use super::whole::{read_text, write_text};
+use crate::stages::agent::{Agent, Freedom, Joint, Part, Shape, Site, Spot, Vector3, across};
+use crate::stages::distance::MAX_SENSORS;
+
+/// Most parts of a body.
+const MAX_PARTS: usize = 256;
+/// Density of a part, kg/m³, where the file names none: that of water.
+const DENSITY: f64 = 1000.0;
+/// Cosine from which on two axes no longer count as at right angles.
+const OBLIQUE: f64 = 1e-6;
+
+/// A body as its file has it.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BodyFile {
+    /// Density of parts without one of their own, kg/m³.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub density: Option<f64>,
+    /// Skin of parts without one of their own.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub skin: Option<SkinEntry>,
+    /// The parts, each after its parent.
+    #[serde(default, rename = "part")]
+    pub parts: Vec<PartEntry>,
+}
+
+/// Sensors on a part: a number, or so many for a square metre.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SkinEntry {
+    /// Sensors on each part.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sensors: Option<usize>,
+    /// Sensors for a square metre of a part.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub per_area: Option<f64>,
+}
+
+/// What shape a part has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum ShapeName {
+    /// `from`, `to`, `radius`.
+    Cylinder,
+    /// `from`, `to` (of its cylinder), `radius`.
+    Capsule,
+    /// `centre`, `radius`.
+    Sphere,
+    /// `centre`, `size`, and `quaternion` if it is turned.
+    Box,
+}
+
+/// How a part is joined to its parent.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum JointName {
+    /// Two axes.
+    Universal,
+    /// One axis.
+    Hinge,
+    /// Every axis.
+    Ball,
+    /// None.
+    Fixed,
+}
+
+/// A part and its joint; lengths in m.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PartEntry {
+    /// Its name.
+    pub name: String,
+    /// Its shape.
+    pub shape: ShapeName,
+    /// Radius of a cylinder, capsule or sphere.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub radius: Option<f64>,
+    /// One end of the axis of a cylinder or capsule.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub from: Option<Vector3>,
+    /// The other end.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub to: Option<Vector3>,
+    /// Centre of a sphere or box.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub centre: Option<Vector3>,
+    /// Lengths of a box's edges.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub size: Option<Vector3>,
+    /// Turn of a box from the axes of the frame: w, x, y, z.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub quaternion: Option<[f64; 4]>,
+    /// Density, kg/m³.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub density: Option<f64>,
+    /// The earlier part that carries it; the first part has none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub parent: Option<String>,
+    /// How it is joined to that.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub joint: Option<JointName>,
+    /// Where both meet; `from` if it is not given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub anchor: Option<Vector3>,
+    /// One axis of a hinge, two of a universal joint; those of the latter are across the part if they are not given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub axes: Option<Vec<Vector3>>,
+    /// Its sensors.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub skin: Option<SkinEntry>,
+}
+
+/// A body and what its parts are called.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NamedBody {
+    /// The body.
+    pub agent: Agent,
+    /// The name of each part.
+    pub names: Vec<String>,
+}
+
+impl NamedBody {
+    /// The rigid bodies, in the order of their labels, each by the names of its parts: `a + b` of parts that are fixed.
+    pub fn rigid_names(&self) -> Vec<String> {
+        let mut names: Vec<String> = Vec::new();
+        for (body, name) in self.agent.rigid_bodies().into_iter().zip(&self.names) {
+            match names.get_mut(body) {
+                Some(all) => *all = format!("{all} + {name}"),
+                None => names.push(name.clone()),
+            }
+        }
+        names
+    }
+}
+
+/// Reads a body.
+///
+/// # Errors
+/// If the file cannot be read, or says something that is no body; the message names the part and what to change.
+pub fn read_body(path: &Path) -> Result<NamedBody, FileError> {
+    let text = read_text(path)?;
+    let file: BodyFile = toml::from_str(&text).map_err(|error| {
+        let line = error.span().map_or(0, |span| 1 + text[..span.start].matches('\n').count());
+        FileError::new(path, format!("line {line}: {}", error.message()))
+    })?;
+    file.body().map_err(|message| FileError::new(path, message))
+}
+
+/// Writes a body, with `remark` in its first lines.
+///
+/// # Errors
+/// If the file cannot be written.
+pub fn write_body(path: &Path, remark: &str, file: &BodyFile) -> Result<(), FileError> {
+    let remark: String = remark.lines().map(|line| format!("# {line}\n")).collect();
+    let text = toml::to_string(file).expect("a body is plain data");
+    write_text(path, &format!("{remark}\n{text}"))
+}
+
+/// What is wrong with a body.
+type Wrong = String;
+
+impl BodyFile {
+    /// The body that the file describes.
+    ///
+    /// # Errors
+    /// What is wrong, in one line that names the part.
+    pub fn body(&self) -> Result<NamedBody, Wrong> {
+        let count = self.parts.len();
+        if !(1..=MAX_PARTS).contains(&count) {
+            return Err(format!("it has {count} tables [[part]], but must have 1 to {MAX_PARTS}"));
+        }
+        let mut agent = Agent { parts: Vec::new(), joints: Vec::new(), sites: Vec::new() };
+        for (at, entry) in self.parts.iter().enumerate() {
+            let here = |wrong: Wrong| format!("part `{}`: {wrong}", entry.name);
+            if entry.name.trim().is_empty() {
+                return Err(format!("part {at} has an empty name"));
+            }
+            if self.parts[..at].iter().any(|other| other.name == entry.name) {
+                return Err(here("another part has this name".to_owned()));
+            }
+            let part = entry.part(self.density.unwrap_or(DENSITY)).map_err(here)?;
+            let spots = self.spots(entry, &part).map_err(here)?;
+            agent.sites.extend(spots.into_iter().map(|Spot { position, normal }| Site {
+                part: at,
+                position,
+                normal,
+            }));
+            if agent.sites.len() > MAX_SENSORS {
+                return Err(format!("it has more than {MAX_SENSORS} sensors; lower its skin"));
+            }
+            agent.joints.extend(entry.joint(at, &self.parts[..at], &part).map_err(here)?);
+            agent.parts.push(part);
+        }
+        if agent.sites.is_empty() {
+            return Err("it has no sensors; say skin = { sensors = 40 }, for instance".to_owned());
+        }
+        Ok(NamedBody { agent, names: self.parts.iter().map(|part| part.name.clone()).collect() })
+    }
+
+    /// Places of the sensors on a part.
+    fn spots(&self, entry: &PartEntry, part: &Part) -> Result<Vec<Spot>, Wrong> {
+        let count = match entry.skin.or(self.skin).unwrap_or_default() {
+            SkinEntry { sensors: None, per_area: None } => 0,
+            SkinEntry { sensors: Some(count), per_area: None } => count,
+            SkinEntry { sensors: None, per_area: Some(density) } => {
+                if !(0.0..=1e9).contains(&density) {
+                    return Err(format!(
+                        "skin.per_area is {density}, but must be 0 to 1e9 for a square metre"
+                    ));
+                }
+                (density * part.shape.area()).round() as usize
+            }
+            SkinEntry { .. } => return Err("skin has both sensors and per_area; give one".to_owned()),
+        };
+        if count > MAX_SENSORS {
+            return Err(format!("it has {count} sensors, but a body has at most {MAX_SENSORS}"));
+        }
+        Ok(part.shape.spread(count))
+    }
+}
+
+/// A number that the physics engine can compute with, or what is wrong with it.
+fn length(key: &str, value: f64) -> Result<f64, Wrong> {
+    let fits = (1e-3..=1e3).contains(&value);
+    if fits { Ok(value) } else { Err(format!("{key} is {value}, but must be 0.001 to 1000 (m)")) }
+}
+
+fn place(key: &str, value: Vector3) -> Result<Vector3, Wrong> {
+    let fits = value.iter().all(|x| x.abs() <= 1e3);
+    if fits {
+        Ok(value)
+    } else {
+        Err(format!("{key} is {value:?}, but must be numbers from -1000 to 1000 (m)"))
+    }
+}
+
+/// A direction of length one.
+fn direction(key: &str, value: Vector3) -> Result<Vector3, Wrong> {
+    let found = Column::from(value);
+    if value.iter().all(|x| x.is_finite()) && (1e-6..=1e6).contains(&found.norm()) {
+        Ok(found.normalize().into())
+    } else {
+        Err(format!("{key} is {value:?}, but must be a direction that is not 0"))
+    }
+}
+
+fn needed<T>(key: &str, value: Option<T>, shape: &str) -> Result<T, Wrong> {
+    value.ok_or_else(|| format!("it lacks {key}, which a {shape} needs"))
+}
+
+impl PartEntry {
+    /// The part, with `density` if it names none.
+    fn part(&self, density: f64) -> Result<Part, Wrong> {
+        let density = self.density.unwrap_or(density);
+        if !(1e-6..=1e6).contains(&density) {
+            return Err(format!("density is {density}, but must be 0.000001 to 1000000 (kg/m³)"));
+        }
+        let word = match self.shape {
+            ShapeName::Cylinder => "cylinder",
+            ShapeName::Capsule => "capsule",
+            ShapeName::Sphere => "sphere",
+            ShapeName::Box => "box",
+        };
+        let is_long = matches!(self.shape, ShapeName::Cylinder | ShapeName::Capsule);
+        let is_box = self.shape == ShapeName::Box;
+        for (key, given, belongs) in [
+            ("radius", self.radius.is_some(), !is_box),
+            ("from", self.from.is_some(), is_long),
+            ("to", self.to.is_some(), is_long),
+            ("centre", self.centre.is_some(), !is_long),
+            ("size", self.size.is_some(), is_box),
+            ("quaternion", self.quaternion.is_some(), is_box),
+        ] {
+            if given && !belongs {
+                return Err(format!("it has {key}, which a {word} has not"));
+            }
+        }
+        let radius = || length("radius", needed("radius", self.radius, word)?);
+        let centre = || place("centre", needed("centre", self.centre, word)?);
+        let (shape, centre, rotation) = match self.shape {
+            ShapeName::Cylinder | ShapeName::Capsule => {
+                let from = Column::from(place("from", needed("from", self.from, word)?)?);
+                let to = Column::from(place("to", needed("to", self.to, word)?)?);
+                let long = length("the distance of from and to", (to - from).norm())?;
+                let radius = radius()?;
+                let shape = match self.shape {
+                    ShapeName::Cylinder => Shape::Cylinder { radius, length: long },
+                    _ => Shape::Capsule { radius, length: long },
+                };
+                (shape, (from + (to - from) / 2.0).into(), across((to - from).into()))
+            }
+            ShapeName::Sphere => (Shape::Sphere { radius: radius()? }, centre()?, across([0.0, 0.0, 1.0])),
+            ShapeName::Box => {
+                let sides = needed("size", self.size, word)?;
+                for side in sides {
+                    length("each number of size", side)?;
+                }
+                let [w, x, y, z] = self.quaternion.unwrap_or([1.0, 0.0, 0.0, 0.0]);
+                let turn = Quaternion::new(w, x, y, z);
+                if !(1e-6..=1e6).contains(&turn.norm()) {
+                    return Err(format!("quaternion is [{w}, {x}, {y}, {z}], but must not be 0"));
+                }
+                let turn = UnitQuaternion::from_quaternion(turn).to_rotation_matrix();
+                let rows = [0, 1, 2].map(|row| [0, 1, 2].map(|column| turn[(row, column)]));
+                (Shape::Box { sides }, centre()?, rows)
+            }
+        };
+        Ok(Part { shape, centre, rotation, density })
+    }
+
+    /// The joint of part `at`, which comes after `earlier` ones; the first has none.
+    fn joint(&self, at: usize, earlier: &[Self], part: &Part) -> Result<Option<Joint>, Wrong> {
+        let Some(parent) = &self.parent else {
+            if at > 0 {
+                return Err("it lacks parent: only the first part has none".to_owned());
+            }
+            if self.joint.is_some() || self.anchor.is_some() || self.axes.is_some() {
+                return Err("it has a joint but no parent".to_owned());
+            }
+            return Ok(None);
+        };
+        let Some(parent) = earlier.iter().position(|other| other.name == *parent) else {
+            return Err(format!("its parent `{parent}` is no earlier part"));
+        };
+        let Some(anchor) = self.anchor.or(self.from) else {
+            return Err("it lacks anchor, the place of its joint".to_owned());
+        };
+        let axes = self
+            .axes
+            .as_deref()
+            .map(|axes| axes.iter().map(|&axis| direction("an axis", axis)).collect::<Result<Vec<_>, _>>());
+        let axes = axes.transpose()?;
+        let freedom = match (self.joint, axes.as_deref()) {
+            (None, _) => return Err("it lacks joint: universal, hinge, ball or fixed".to_owned()),
+            (Some(JointName::Universal), None) => {
+                Freedom::Universal([0, 1].map(|column| part.rotation.map(|row| row[column])))
+            }
+            (Some(JointName::Universal), Some(&[first, second])) => {
+                let cosine = Column::from(first).dot(&Column::from(second));
+                if cosine.abs() > OBLIQUE {
+                    return Err(format!(
+                        "its axes are not at right angles (the cosine between them is {cosine:.6})"
+                    ));
+                }
+                Freedom::Universal([first, second])
+            }
+            (Some(JointName::Hinge), Some(&[axis])) => Freedom::Hinge(axis),
+            (Some(JointName::Ball), None) => Freedom::Ball,
+            (Some(JointName::Fixed), None) => Freedom::Fixed,
+            (Some(JointName::Universal), _) => return Err("a universal joint has two axes".to_owned()),
+            (Some(JointName::Hinge), _) => {
+                return Err("a hinge needs axes = [[x, y, z]], one axis".to_owned());
+            }
+            (Some(_), _) => return Err("it has axes, which a ball or fixed joint has not".to_owned()),
+        };
+        Ok(Some(Joint { parent, child: at, anchor: place("anchor", anchor)?, freedom }))
+    }
+}
+
+#[cfg(test)]
+mod tests;

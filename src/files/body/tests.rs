@@ -1,0 +1,134 @@
+//! Test what a body file means, and that every mistake is named.
+
+use super::*;
+
+const TRUNK: &str =
+    "[[part]]\nname = \"trunk\"\nshape = \"capsule\"\nradius = 0.1\nfrom = [0, 0, 0]\nto = [0, 0, 0.5]\n";
+
+fn read(text: &str) -> Result<NamedBody, String> {
+    let file = tempfile::NamedTempFile::new().unwrap();
+    std::fs::write(file.path(), text).unwrap();
+    read_body(file.path()).map_err(|error| {
+        let message = error.to_string();
+        message.split_once(": ").unwrap().1.to_owned()
+    })
+}
+
+/// A trunk of 50 sensors, and a part `arm` with these lines.
+fn with_arm(lines: &str) -> Result<NamedBody, String> {
+    read(&format!("skin = {{ sensors = 50 }}\n{TRUNK}\n[[part]]\nname = \"arm\"\n{lines}"))
+}
+
+#[test]
+fn a_body_of_every_shape_and_joint_is_read_as_it_is_meant() {
+    let body = with_arm(
+        "shape = \"box\"\ncentre = [0, 0.3, 0]\nsize = [0.1, 0.2, 0.3]\nquaternion = [1, 0, 0, 1]\nparent = \"trunk\"\n\
+         joint = \"hinge\"\nanchor = [0, 0.1, 0]\naxes = [[0, 0, 2]]\ndensity = 500\nskin = { per_area = 100 }\n\
+         [[part]]\nname = \"hand\"\nshape = \"sphere\"\ncentre = [0, 0.5, 0]\nradius = 0.05\nparent = \"arm\"\n\
+         joint = \"fixed\"\nanchor = [0, 0.45, 0]\nskin = { sensors = 0 }\n\
+         [[part]]\nname = \"tool\"\nshape = \"cylinder\"\nfrom = [0, 0.5, 0]\nto = [0, 0.9, 0]\nradius = 0.02\n\
+         parent = \"hand\"\njoint = \"universal\"\n",
+    )
+    .unwrap();
+    let Agent { parts, joints, sites } = &body.agent;
+    assert_eq!(body.names, ["trunk", "arm", "hand", "tool"]);
+    assert_eq!(body.rigid_names(), ["trunk", "arm + hand", "tool"]);
+    assert_eq!(parts[0].shape, Shape::Capsule { radius: 0.1, length: 0.5 });
+    assert_eq!(
+        (parts[0].centre, parts[0].axis(), parts[0].density),
+        ([0.0, 0.0, 0.25], [0.0, 0.0, 1.0], 1000.0)
+    );
+    assert_eq!((parts[1].shape, parts[1].density), (Shape::Box { sides: [0.1, 0.2, 0.3] }, 500.0));
+    // A quarter of a turn about z takes x to y.
+    let turned = parts[1].rotation.map(|row| row[0]);
+    assert!((turned[1] - 1.0).abs() < 1e-12, "{turned:?}");
+    assert_eq!(
+        joints[0],
+        Joint { parent: 0, child: 1, anchor: [0.0, 0.1, 0.0], freedom: Freedom::Hinge([0.0, 0.0, 1.0]) }
+    );
+    assert_eq!(joints[1].freedom, Freedom::Fixed);
+    assert_eq!(joints[2].anchor, [0.0, 0.5, 0.0]);
+    let Freedom::Universal(axes) = joints[2].freedom else { panic!("{:?}", joints[2]) };
+    assert!(axes.iter().all(|axis| axis[1].abs() < 1e-12), "both are across the tool: {axes:?}");
+    // 100 for a square metre of 0.22 m².
+    assert_eq!(
+        sites.iter().map(|site| site.part).fold([0; 4], |mut all, part| {
+            all[part] += 1;
+            all
+        }),
+        [50, 22, 0, 50]
+    );
+}
+
+#[test]
+fn what_is_written_is_read_again() {
+    let file: BodyFile =
+        toml::from_str(&format!("density = 900.0\nskin = {{ sensors = 8 }}\n{TRUNK}")).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("body.toml");
+    write_body(&path, "Two lines\nof remark", &file).unwrap();
+    assert!(std::fs::read_to_string(&path).unwrap().starts_with("# Two lines\n# of remark\n"));
+    assert_eq!(read_body(&path).unwrap(), file.body().unwrap());
+}
+
+#[test]
+fn every_mistake_is_one_line_that_names_the_part() {
+    let joined = "parent = \"trunk\"\njoint = \"ball\"\n";
+    let rod = "shape = \"cylinder\"\nfrom = [0, 0, 0]\nto = [0, 0, 1]\nradius = 0.1\n";
+    for (lines, expected) in [
+        (format!("{rod}radus = 0.1\n{joined}"), "line 15: unknown field `radus`"),
+        (format!("{rod}centre = [0, 0, 0]\n{joined}"), "part `arm`: it has centre, which a cylinder has not"),
+        (
+            format!("shape = \"sphere\"\nradius = 0.1\n{joined}"),
+            "part `arm`: it lacks centre, which a sphere needs",
+        ),
+        (format!("shape = \"cone\"\n{joined}"), "unknown variant `cone`"),
+        (format!("{}{joined}", rod.replace("radius = 0.1", "radius = nan")), "part `arm`: radius is NaN"),
+        (
+            format!("{}{joined}", rod.replace("to = [0, 0, 1]", "to = [0, 0, 0]")),
+            "the distance of from and to is 0",
+        ),
+        (
+            format!("{}{joined}", rod.replace("to = [0, 0, 1]", "to = [0, 0, inf]")),
+            "part `arm`: to is [0.0, 0.0, inf]",
+        ),
+        (format!("{rod}density = 0\n{joined}"), "part `arm`: density is 0"),
+        (rod.to_owned(), "part `arm`: it lacks parent"),
+        (
+            format!("{rod}parent = \"leg\"\njoint = \"ball\"\n"),
+            "part `arm`: its parent `leg` is no earlier part",
+        ),
+        (format!("{rod}parent = \"trunk\"\n"), "part `arm`: it lacks joint"),
+        (format!("{rod}parent = \"trunk\"\njoint = \"hinge\"\n"), "part `arm`: a hinge needs axes"),
+        (format!("{rod}{joined}axes = [[0, 0, 1]]\n"), "part `arm`: it has axes"),
+        (
+            format!("{rod}parent = \"trunk\"\njoint = \"hinge\"\naxes = [[0, 0, 0]]\n"),
+            "part `arm`: an axis is",
+        ),
+        (
+            format!("{rod}parent = \"trunk\"\njoint = \"universal\"\naxes = [[0, 0, 1], [0, 1, 1]]\n"),
+            "part `arm`: its axes are not at right angles",
+        ),
+        (format!("{rod}{joined}skin = {{ sensors = 9, per_area = 9 }}\n"), "part `arm`: skin has both"),
+        (format!("{rod}{joined}skin = {{ sensors = 30000 }}\n"), "part `arm`: it has 30000 sensors"),
+        (format!("{rod}{joined}skin = {{ per_area = -1 }}\n"), "part `arm`: skin.per_area is -1"),
+        (
+            format!(
+                "shape = \"box\"\ncentre = [0, 0, 0]\nsize = [1, 1, 1]\nquaternion = [0, 0, 0, 0]\n{joined}"
+            ),
+            "part `arm`: quaternion is",
+        ),
+        (
+            format!("shape = \"box\"\ncentre = [0, 0, 0]\nsize = [1, 1, 1]\n{joined}"),
+            "part `arm`: it lacks anchor",
+        ),
+    ] {
+        let message = with_arm(&lines).unwrap_err();
+        assert!(message.contains(expected) && !message.contains('\n'), "{lines:?} gave {message:?}");
+    }
+    assert!(read("").unwrap_err().contains("0 tables [[part]]"));
+    assert!(read(TRUNK).unwrap_err().contains("no sensors"));
+    assert!(read(&format!("{TRUNK}joint = \"ball\"\n")).unwrap_err().contains("a joint but no parent"));
+    assert!(read(&format!("{TRUNK}{TRUNK}")).unwrap_err().contains("another part has this name"));
+    assert!(read("[[part]\n").unwrap_err().contains("line 1"));
+}

@@ -1,0 +1,184 @@
+//! A body of any shape: a tree of parts, the joints between them, and the sensors on them.
+
+use std::f64::consts::FRAC_1_SQRT_2;
+
+use super::shape::{Shape, Vector3};
+use crate::stages::tree::Truth;
+
+/// A rigid part, in the rest pose.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Part {
+    /// Its shape.
+    pub shape: Shape,
+    /// Centre of mass, m.
+    pub centre: Vector3,
+    /// Rotation matrix from the part's frame to the world's, by rows.
+    pub rotation: [Vector3; 3],
+    /// Density, kg/m³.
+    pub density: f64,
+}
+
+impl Part {
+    /// Unit vector along the part: the z axis of its frame.
+    pub fn axis(&self) -> Vector3 {
+        self.rotation.map(|row| row[2])
+    }
+}
+
+/// A rotation, by rows, that turns z into the direction of `axis`; where x and y go is as in ODE's `dRFromZAxis`.
+///
+/// `axis` must not be 0.
+pub fn across(axis: Vector3) -> [Vector3; 3] {
+    let largest = axis.iter().fold(0.0, |largest: f64, x| largest.max(x.abs()));
+    let [x, y, z] = axis.map(|x| x / largest);
+    let scale = 1.0 / (x * x + y * y + z * z).sqrt();
+    let axis @ [x, y, z] = [x * scale, y * scale, z * scale];
+    let (first, second) = if z.abs() > FRAC_1_SQRT_2 {
+        let square = y * y + z * z;
+        let scale = 1.0 / square.sqrt();
+        let first = [0.0, -z * scale, y * scale];
+        (first, [square * scale, -x * first[2], x * first[1]])
+    } else {
+        let square = x * x + y * y;
+        let scale = 1.0 / square.sqrt();
+        let first = [-y * scale, x * scale, 0.0];
+        (first, [-z * first[1], z * first[0], square * scale])
+    };
+    [0, 1, 2].map(|row| [first[row], second[row], axis[row]])
+}
+
+/// How a joint lets its parts turn against each other. Axes are unit vectors in the rest pose.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Freedom {
+    /// About two axes at right angles; the paper's joint.
+    Universal([Vector3; 2]),
+    /// About one axis.
+    Hinge(Vector3),
+    /// About every axis.
+    Ball,
+    /// Not at all: both parts are one rigid body.
+    Fixed,
+}
+
+impl Freedom {
+    /// Number of angles, at most three.
+    pub fn angles(&self) -> usize {
+        match self {
+            Self::Universal(_) => 2,
+            Self::Hinge(_) => 1,
+            Self::Ball => 3,
+            Self::Fixed => 0,
+        }
+    }
+}
+
+/// A joint, in the rest pose.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Joint {
+    /// Index of the part that carries the child.
+    pub parent: usize,
+    /// Index of the part that is carried.
+    pub child: usize,
+    /// Where both parts meet, m.
+    pub anchor: Vector3,
+    /// How they turn.
+    pub freedom: Freedom,
+}
+
+/// A tactile sensor in the frame of its part.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Site {
+    /// The part it sits on.
+    pub part: usize,
+    /// Position, m.
+    pub position: Vector3,
+    /// Outward unit normal n_i of the surface.
+    pub normal: Vector3,
+}
+
+/// The body and its skin.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Agent {
+    /// Parts; part 0 is the root of the tree.
+    pub parts: Vec<Part>,
+    /// Joints; joint j carries part j + 1, and its parent comes before that.
+    pub joints: Vec<Joint>,
+    /// Sensors, those of part 0 first.
+    pub sites: Vec<Site>,
+}
+
+impl Agent {
+    /// The rigid body that each part belongs to: parts that are fixed to each other are one. Numbered by their first parts.
+    pub fn rigid_bodies(&self) -> Vec<usize> {
+        let mut bodies = vec![0];
+        for joint in &self.joints {
+            let new = bodies.iter().max().map_or(0, |last| last + 1);
+            bodies.push(if joint.freedom == Freedom::Fixed { bodies[joint.parent] } else { new });
+        }
+        bodies
+    }
+
+    /// The true part of each sensor; parts that are fixed to each other are one.
+    pub fn labels(&self) -> Vec<usize> {
+        let bodies = self.rigid_bodies();
+        self.sites.iter().map(|site| bodies[site.part]).collect()
+    }
+
+    /// The true tree as (child, parent) pairs; parts that are fixed to each other are one.
+    pub fn tree(&self) -> Vec<(usize, usize)> {
+        let bodies = self.rigid_bodies();
+        let moving = self.joints.iter().filter(|joint| joint.freedom != Freedom::Fixed);
+        moving.map(|joint| (bodies[joint.child], bodies[joint.parent])).collect()
+    }
+
+    /// The true part of each sensor and the true tree.
+    pub fn truth(&self) -> Truth {
+        Truth { labels: self.labels(), tree: self.tree() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parts_that_are_fixed_to_each_other_are_one_in_truth() {
+        let part = Part {
+            shape: Shape::Sphere { radius: 0.1 },
+            centre: [0.0; 3],
+            rotation: across([0.0, 0.0, 1.0]),
+            density: 1000.0,
+        };
+        let joint = |parent, child, freedom| Joint { parent, child, anchor: [0.0; 3], freedom };
+        let site = |part| Site { part, position: [0.1, 0.0, 0.0], normal: [1.0, 0.0, 0.0] };
+        let agent = Agent {
+            parts: vec![part; 5],
+            joints: vec![
+                joint(0, 1, Freedom::Ball),
+                joint(1, 2, Freedom::Fixed),
+                joint(2, 3, Freedom::Ball),
+                joint(0, 4, Freedom::Fixed),
+            ],
+            sites: (0..5).map(site).collect(),
+        };
+        assert_eq!(agent.labels(), [0, 1, 1, 2, 0]);
+        assert_eq!(agent.tree(), [(1, 0), (2, 1)]);
+    }
+
+    #[test]
+    fn a_part_is_turned_without_being_mirrored() {
+        for axis in [[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.6, 0.0, -0.8], [0.48, 0.6, 0.64]] {
+            let rows = across(axis);
+            let dot = |a: Vector3, b: Vector3| (0..3).map(|i| a[i] * b[i]).sum::<f64>();
+            for i in 0..3 {
+                for j in 0..3 {
+                    assert!((dot(rows[i], rows[j]) - f64::from(u8::from(i == j))).abs() < 1e-12);
+                }
+            }
+            let [a, b, c] = rows;
+            let cross = [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+            assert!((dot(cross, c) - 1.0).abs() < 1e-12, "{axis:?}");
+            assert!((dot(rows.map(|row| row[2]), axis) - 1.0).abs() < 1e-12);
+        }
+    }
+}

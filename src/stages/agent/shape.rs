@@ -1,0 +1,216 @@
+//! Shapes of parts, and sensors that are spread evenly over their surface.
+
+use std::f64::consts::{PI, TAU};
+
+/// A position or direction in space.
+pub type Vector3 = [f64; 3];
+
+/// A solid in the frame of its part: its centre of mass is the origin, and its axis, if it has one, is z. Lengths in m.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Shape {
+    /// A cylinder with flat ends.
+    Cylinder {
+        /// Radius.
+        radius: f64,
+        /// Length.
+        length: f64,
+    },
+    /// A cylinder with a half ball on each end.
+    Capsule {
+        /// Radius of the cylinder and the balls.
+        radius: f64,
+        /// Length of the cylinder, without the balls.
+        length: f64,
+    },
+    /// A ball.
+    Sphere {
+        /// Radius.
+        radius: f64,
+    },
+    /// A box.
+    Box {
+        /// Lengths of its edges, along x, y and z.
+        sides: Vector3,
+    },
+}
+
+/// A place on a surface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Spot {
+    /// Position, m.
+    pub position: Vector3,
+    /// Outward unit normal.
+    pub normal: Vector3,
+}
+
+/// Share of a turn between two neighbours of a spiral that is as even as can be (the golden angle).
+const GOLDEN: f64 = 0.381_966_011_250_105_1;
+
+impl Shape {
+    /// Area of the surface, m².
+    pub fn area(&self) -> f64 {
+        match *self {
+            Self::Cylinder { radius, length } => TAU * radius * (length + radius),
+            Self::Capsule { radius, length } => TAU * radius * (length + 2.0 * radius),
+            Self::Sphere { radius } => 2.0 * TAU * radius * radius,
+            Self::Box { sides: [x, y, z] } => 2.0 * (x * y + y * z + z * x),
+        }
+    }
+
+    /// Half of its extent along z, m.
+    pub fn half_length(&self) -> f64 {
+        match *self {
+            Self::Cylinder { length, .. } => length / 2.0,
+            Self::Capsule { radius, length } => length / 2.0 + radius,
+            Self::Sphere { radius } => radius,
+            Self::Box { sides } => sides[2] / 2.0,
+        }
+    }
+
+    /// So many places that share the surface evenly, on a spiral from the lowest to the highest; on a box, in rows
+    /// on each face.
+    pub fn spread(&self, count: usize) -> Vec<Spot> {
+        match *self {
+            Self::Box { sides } => on_box(sides, count),
+            _ => (0..count).map(|at| self.on_spiral(at, count)).collect(),
+        }
+    }
+
+    /// A place of a solid of revolution, by the share of the surface that lies below it.
+    fn on_spiral(&self, at: usize, count: usize) -> Spot {
+        let below = (at as f64 + 0.5) / count as f64 * self.area();
+        let (sine, cosine) = (TAU * (at as f64 * GOLDEN).fract()).sin_cos();
+        let spot = |off: f64, height: f64, out: f64, up: f64| Spot {
+            position: [off * cosine, off * sine, height],
+            normal: [out * cosine, out * sine, up],
+        };
+        // Archimedes: the area of a ball between two heights is that of the cylinder around it.
+        let round = |radius: f64, length: f64| {
+            let height = below / (TAU * radius) - length / 2.0 - radius;
+            let up = (height - height.clamp(-length / 2.0, length / 2.0)) / radius;
+            let out = (1.0 - up * up).max(0.0).sqrt();
+            spot(radius * out, height, out, up)
+        };
+        match *self {
+            Self::Capsule { radius, length } => round(radius, length),
+            Self::Sphere { radius } => round(radius, 0.0),
+            Self::Cylinder { radius, length } => {
+                let cap = PI * radius * radius;
+                let side = TAU * radius * length;
+                if below < cap {
+                    spot(radius * (below / cap).sqrt(), -length / 2.0, 0.0, -1.0)
+                } else if below < cap + side {
+                    spot(radius, (below - cap) / (TAU * radius) - length / 2.0, 1.0, 0.0)
+                } else {
+                    let left = (1.0 - (below - cap - side) / cap).max(0.0);
+                    spot(radius * left.sqrt(), length / 2.0, 0.0, 1.0)
+                }
+            }
+            Self::Box { .. } => unreachable!("a box is no solid of revolution"),
+        }
+    }
+}
+
+/// Places on the faces of a box, as many on each as its share of the surface says.
+fn on_box(sides: Vector3, count: usize) -> Vec<Spot> {
+    let faces = (0..6).map(|face| (face / 2, if face % 2 == 0 { -1.0 } else { 1.0 }));
+    let area = Shape::Box { sides }.area();
+    let (mut spots, mut below) = (Vec::with_capacity(count), 0.0);
+    for (axis, side) in faces {
+        let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+        below += sides[u] * sides[v] / area;
+        // Whole numbers of places, none lost by rounding.
+        let until = ((below * count as f64).round() as usize).min(count);
+        let own = until - spots.len();
+        // Rows along v, as far from each other as their places are.
+        let rows = ((own as f64 * sides[u] / sides[v]).sqrt().round() as usize).clamp(1, own.max(1));
+        for row in 0..rows {
+            let places = (row + 1) * own / rows - row * own / rows;
+            spots.extend((0..places).map(|place| {
+                let (mut position, mut normal) = ([0.0; 3], [0.0; 3]);
+                position[axis] = side * sides[axis] / 2.0;
+                normal[axis] = side;
+                position[u] = sides[u] * ((row as f64 + 0.5) / rows as f64 - 0.5);
+                position[v] = sides[v] * ((place as f64 + 0.5) / places as f64 - 0.5);
+                Spot { position, normal }
+            }));
+        }
+    }
+    spots
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SHAPES: [Shape; 4] = [
+        Shape::Cylinder { radius: 0.1, length: 0.4 },
+        Shape::Capsule { radius: 0.1, length: 0.4 },
+        Shape::Sphere { radius: 0.1 },
+        Shape::Box { sides: [0.1, 0.2, 0.4] },
+    ];
+
+    /// The sum over places of the normal, and of position times normal, each place with its share of the area. By Gauss's
+    /// theorem these are 0 and three times the volume.
+    fn sums(shape: Shape, spots: &[Spot]) -> (f64, f64) {
+        let share = shape.area() / spots.len() as f64;
+        let normal = [0, 1, 2].map(|i| spots.iter().map(|spot| spot.normal[i] * share).sum::<f64>());
+        let flux = |spot: &Spot| (0..3).map(|i| spot.normal[i] * spot.position[i]).sum::<f64>();
+        (normal.iter().map(|x| x * x).sum::<f64>().sqrt(), spots.iter().map(|spot| flux(spot) * share).sum())
+    }
+
+    fn volume(shape: Shape) -> f64 {
+        match shape {
+            Shape::Cylinder { radius, length } => PI * radius * radius * length,
+            Shape::Capsule { radius, length } => PI * radius * radius * (length + 4.0 / 3.0 * radius),
+            Shape::Sphere { radius } => 4.0 / 3.0 * PI * radius.powi(3),
+            Shape::Box { sides } => sides.iter().product(),
+        }
+    }
+
+    #[test]
+    fn places_share_the_surface_evenly() {
+        for shape in SHAPES {
+            let spots = shape.spread(2000);
+            assert_eq!(spots.len(), 2000);
+            let (normal, flux) = sums(shape, &spots);
+            assert!(normal < 0.003 * shape.area(), "{shape:?}: {normal}");
+            assert!((flux / (3.0 * volume(shape)) - 1.0).abs() < 0.003, "{shape:?}: {flux}");
+            // The broken twin: places on one half only.
+            let half: Vec<Spot> = spots.into_iter().filter(|spot| spot.position[2] < 0.0).collect();
+            assert!(sums(shape, &half).0 > 0.1 * shape.area(), "{shape:?}");
+        }
+    }
+
+    #[test]
+    fn no_two_places_are_much_nearer_than_others() {
+        for shape in SHAPES {
+            for count in [40, 168] {
+                let spots = shape.spread(count);
+                let apart = |a: &Spot, b: &Spot| {
+                    (0..3).map(|i| (a.position[i] - b.position[i]).powi(2)).sum::<f64>().sqrt()
+                };
+                let nearest = spots
+                    .iter()
+                    .enumerate()
+                    .flat_map(|(at, a)| spots.iter().skip(at + 1).map(move |b| apart(a, b)));
+                let pitch = (shape.area() / count as f64).sqrt();
+                let nearest = nearest.fold(f64::INFINITY, f64::min);
+                assert!(nearest > 0.5 * pitch, "{shape:?}, {count}: {nearest} of {pitch}");
+            }
+        }
+    }
+
+    #[test]
+    fn normals_have_length_one_and_few_places_are_no_mistake() {
+        for shape in SHAPES {
+            for count in 0..8 {
+                let spots = shape.spread(count);
+                assert_eq!(spots.len(), count, "{shape:?}");
+                for Spot { normal, .. } in spots {
+                    assert!((normal.iter().map(|x| x * x).sum::<f64>() - 1.0).abs() < 1e-12, "{shape:?}");
+                }
+            }
+        }
+    }
+}
