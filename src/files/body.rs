@@ -261,10 +261,6 @@ fn needed<T>(key: &str, value: Option<T>, shape: &str) -> Result<T, Wrong> {
 impl PartEntry {
     /// The part, with `density` if it names none.
     fn part(&self, density: f64) -> Result<Part, Wrong> {
-        let density = self.density.unwrap_or(density);
-        if !(1e-6..=1e6).contains(&density) {
-            return Err(format!("density is {density}, but must be 0.000001 to 1000000 (kg/m³)"));
-        }
         let word = match self.shape {
             ShapeName::Cylinder => "cylinder",
             ShapeName::Capsule => "capsule",
@@ -315,6 +311,11 @@ impl PartEntry {
                 (Shape::Box { sides }, centre()?, rows)
             }
         };
+        // After the lengths: a density of a mass and wrong lengths is wrong, too.
+        let density = self.density.unwrap_or(density);
+        if !(1e-6..=1e6).contains(&density) {
+            return Err(format!("density is {density}, but must be 0.000001 to 1000000 (kg/m³)"));
+        }
         Ok(Part { shape, centre, rotation, density })
     }
 
