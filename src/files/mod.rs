@@ -4,6 +4,7 @@ pub mod body;
 pub(crate) mod checkpoint;
 mod error;
 mod hash;
+pub mod import;
 pub(crate) mod manifest;
 pub mod npy;
 pub(crate) mod provenance;
