@@ -1,5 +1,6 @@
-//! The command line: one subcommand for each stage and each experiment, and two for finished results.
+//! The command line: one subcommand for each stage and each experiment, two for finished results, and one that makes bodies.
 
+mod body;
 mod estimate;
 mod experiments;
 mod options;

@@ -5,6 +5,7 @@ use std::process::ExitCode;
 use anyhow::Result;
 use clap::{Parser, Subcommand};
 
+use super::body::Body;
 use super::estimate::Estimate;
 use super::experiments::{Compare, Multiverse, Reproduce, Search, Sensitivity};
 use super::results::{Plot, Verify};
@@ -22,6 +23,7 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
+    Body(Body),
     Simulate(Simulate),
     Distance(Distance),
     Map(Map),
@@ -40,6 +42,7 @@ enum Command {
 impl Command {
     fn run(self) -> Result<ExitCode> {
         match self {
+            Self::Body(command) => command.run(),
             Self::Simulate(command) => command.run(),
             Self::Distance(command) => command.run(),
             Self::Map(command) => command.run(),

@@ -1,0 +1,99 @@
+//! `bodyschema body import` as a user meets it: descriptions of both kinds, and mistakes.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use bodyschema::files::body::{NamedBody, read_body};
+use bodyschema::stages::agent::{Freedom, Shape};
+
+fn data(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/import").join(name)
+}
+
+fn import(file: &Path, options: &[&str], out: &Path) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_bodyschema"))
+        .args(["body", "import"])
+        .arg(file)
+        .args(options)
+        .arg("--out")
+        .arg(out)
+        .output()
+        .expect("the program starts")
+}
+
+/// The body that a description becomes, and what the program says of it.
+fn imported(name: &str, options: &[&str]) -> (NamedBody, String) {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("body.toml");
+    let output = import(&data(name), options, &out);
+    assert!(output.status.success() && output.stderr.is_empty(), "{output:?}");
+    (read_body(&out).unwrap(), String::from_utf8(output.stdout).unwrap())
+}
+
+#[track_caller]
+fn near(found: [f64; 3], expected: [f64; 3]) {
+    assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-9), "{found:?} is not {expected:?}");
+}
+
+#[test]
+fn mjcf_becomes_a_body() {
+    let (body, told) = imported("arm.xml", &[]);
+    assert!(told.starts_with("5 parts, in "), "{told}");
+    assert!(told.contains("joints: 1 universal, 2 hinge, 0 ball, 1 fixed\n"), "{told}");
+    assert_eq!(body.rigid_names(), ["trunk", "upper arm", "forearm", "hand + hand/2"]);
+    let agent = &body.agent;
+    assert_eq!(agent.sites.len(), 5 * 40);
+    assert!(agent.parts.iter().all(|part| part.density == 1100.0));
+    assert_eq!(agent.parts[0].shape, Shape::Box { sides: [0.2, 0.3, 0.5] });
+    // The arm's z points to y of the world.
+    near(agent.parts[1].axis(), [0.0, 1.0, 0.0]);
+    near(agent.parts[1].centre, [0.0, 0.35, 1.2]);
+    near(agent.joints[1].anchor, [0.0, 0.55, 1.2]);
+    let Freedom::Hinge(axis) = agent.joints[1].freedom else { panic!("{:?}", agent.joints) };
+    near(axis, [0.0, 0.0, -1.0]);
+    let Freedom::Universal([first, second]) = agent.joints[2].freedom else { panic!("{:?}", agent.joints) };
+    near(first, [1.0, 0.0, 0.0]);
+    near(second, [0.0, 0.0, -1.0]);
+}
+
+#[test]
+fn urdf_becomes_a_body() {
+    let (body, told) = imported("arm.urdf", &["--per-area", "100"]);
+    assert!(told.contains("joints: 0 universal, 1 hinge, 0 ball, 1 fixed\n"), "{told}");
+    assert_eq!(body.rigid_names(), ["base", "arm + tool"]);
+    let agent = &body.agent;
+    near(agent.parts[0].centre, [0.0, 0.0, 0.1]);
+    assert!((agent.parts[0].density - 3.0 / (0.002 * std::f64::consts::PI)).abs() < 1e-6);
+    near(agent.parts[1].axis(), [1.0, 0.0, 0.0]);
+    near(agent.parts[2].centre, [0.4, 0.0, 0.25]);
+    near(agent.joints[0].anchor, [0.0, 0.0, 0.25]);
+    assert_eq!(agent.joints[0].freedom, Freedom::Hinge([0.0, 1.0, 0.0]));
+    let sensors = |at: usize| agent.sites.iter().filter(|site| site.part == at).count();
+    assert_eq!([0, 1, 2].map(sensors), [19, 11, 1]);
+    let (body, _) = imported("arm.urdf", &["--sensors-per-part", "7"]);
+    assert_eq!(body.agent.sites.len(), 21);
+}
+
+#[test]
+fn a_mistake_is_one_line_and_leaves_no_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("body.toml");
+    for (name, expected) in [
+        ("mesh.xml", "mesh.xml: line 6: geom of body `arm` is of type `mesh`; make it a box, sphere"),
+        ("cut.xml", "cut.xml: this is no well-formed XML"),
+        ("loop.urdf", "loop.urdf: link `a` is in a loop of joints"),
+        ("slide.urdf", "slide.urdf: link `b`: its joint is `prismatic`"),
+        ("number.urdf", "number.urdf: line 2: sphere of link `a` has radius `wide`, which must be a number"),
+        ("absent.xml", "absent.xml: cannot be read"),
+    ] {
+        let output = import(&data(name), &[], &out);
+        let told = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{name}: {told}");
+        assert!(told.starts_with("bodyschema: ") && told.contains(expected), "{name}: {told}");
+        assert_eq!((told.lines().count(), output.stdout.len()), (1, 0), "{name}: {told}");
+        assert!(!out.exists(), "{name}");
+    }
+    let both = import(&data("arm.xml"), &["--per-area", "9", "--sensors-per-part", "9"], &out);
+    assert_eq!(both.status.code(), Some(2));
+    assert!(!out.exists());
+}
