@@ -198,7 +198,9 @@ fn solid(geom: &Element, frame: &Isometry3<f64>, defaults: &Defaults) -> Result<
         Some([a, b, c, d, e, f]) => {
             let (from, to) = (Vector3::new(a, b, c), Vector3::new(d, e, f));
             let along = to - from;
-            let turn = z_to(&geom.direction("fromto", along.as_slice())?);
+            let direction = geom.direction("fromto", along.as_slice())?;
+            // MuJoCo turns z to the first end, which shows in a box alone; otherwise `from` stays the first end.
+            let turn = z_to(&if kind == "box" { -direction } else { direction });
             let half = along.norm() / 2.0;
             size = if kind == "box" { vec![size[0], size[0], half] } else { vec![size[0], half] };
             Isometry3::from_parts(Translation3::from(from + along / 2.0), turn)

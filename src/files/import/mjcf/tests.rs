@@ -61,9 +61,10 @@ fn two_ends_place_and_turn_a_solid() {
     assert_eq!(cylinder.shape, Shape::Cylinder { radius: 0.1, length: 2.0 });
     near(cylinder.pose.translation.vector, [0.0, -1.0, 0.0]);
     axes(&cylinder, [X, Z, minus(Y)]);
-    let plank = solid_of("", "<geom type='box' size='0.1' fromto='0 0 1  0 0 -1'/>");
-    assert_eq!(plank.shape, Shape::Box { sides: [0.2, 0.2, 2.0] });
-    axes(&plank, [X, minus(Y), minus(Z)]);
+    let plank = solid_of("", "<geom type='box' size='0.1' fromto='0 0 0  2 1 2'/>");
+    assert_eq!(plank.shape, Shape::Box { sides: [0.2, 0.2, 3.0] });
+    // As MuJoCo has it.
+    axes(&plank, [[-1.0, -2.0, 2.0], [-2.0, 2.0, 1.0], [-2.0, -1.0, -2.0]].map(|axis| axis.map(|x| x / 3.0)));
 }
 
 #[test]
