@@ -3,33 +3,35 @@
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use anyhow::{Context, Result, ensure};
+use anyhow::{Result, ensure};
 use clap::Args;
 use serde::Serialize;
 
 use super::options::{SettingsAndSeed, TruthFiles};
 use super::output::say;
-use super::posterior::write_parts;
-use super::tree;
+use super::tree::{self, say_lost};
 use crate::analysis::estimate::{self, estimate};
+use crate::analysis::statistics::mean;
 use crate::experiments::progress::progress;
 use crate::files::tables::write_rows;
-use crate::files::{npy, prepare_folder, write_text};
+use crate::files::touch::read_touch;
+use crate::files::{prepare_folder, write_text};
 use crate::numerics::rng::stream;
-use crate::settings::Base;
+use crate::stages::co_motion::is_signed;
 use crate::stages::sense::Tactile;
 use crate::stages::tree::Truth;
 use crate::stages::usable::{Fault, Usable, usable};
 
 /// Parts and tree of any body, from touch alone: for one's own robot (not in the paper).
 ///
-/// Reads pressures (T x M, any numbers) and writes into DIR: parts.csv (sensor,part,probability), tree.csv
-/// (child,parent,confidence), edges.csv (part,other,agreement,confidence,in_tree), dropped.csv (sensor,fault: those that are
-/// dead, constant or no number) and summary.json. Distances, body map and parts are found as by `distance`, `map` and
-/// `infer --sampler split-merge`; parts are then mended so that each is rigid, and joined as by `tree`.
+/// Reads pressures (T x M, any numbers) and writes into DIR: parts.csv (sensor,part,unexplained,next_part,next_unexplained),
+/// tree.csv (child,parent,confidence), edges.csv (part,other,agreement,confidence,in_tree), dropped.csv (sensor,fault: those
+/// that are dead, constant or no number) and summary.json. A part is rigid: sensors are on one part if one motion explains
+/// what all of them feel. unexplained is the share of a sensor's squares that the motion of its part leaves, next_unexplained
+/// what the next best part leaves. Parts are joined as by `tree`.
 #[derive(Args)]
 pub struct Estimate {
-    /// Pressures: a .npy file with a row for each sample and a column for each sensor
+    /// Pressures: a .npy or .csv file with a row for each sample and a column for each sensor
     tactile: PathBuf,
     #[command(flatten)]
     common: SettingsAndSeed,
@@ -46,15 +48,28 @@ struct DroppedRow {
     fault: String,
 }
 
+/// A row of parts.csv.
+#[derive(Serialize)]
+struct PartRow {
+    sensor: usize,
+    part: usize,
+    unexplained: f64,
+    next_part: Option<usize>,
+    next_unexplained: Option<f64>,
+}
+
+/// Fewest sensors of which parts can be found: two pieces.
+const MIN_SENSORS: usize = 12;
+
 /// summary.json.
 #[derive(Serialize)]
 struct Summary {
     samples: usize,
     sensors: usize,
     dropped: usize,
-    dimensions: usize,
+    lost_samples: usize,
+    signed: bool,
     parts: usize,
-    mended_sensors: usize,
     seed: u64,
     revision: &'static str,
 }
@@ -62,14 +77,14 @@ struct Summary {
 impl Estimate {
     /// Runs the subcommand.
     pub fn run(self) -> Result<ExitCode> {
-        let settings = self.common.load_over(Base::SPLIT_MERGE)?;
-        settings.validate()?;
+        let settings = self.common.load(false)?;
         let (input, out, seed) = (&self.tactile, &self.out, settings.experiment.seed);
         let in_file = || input.display().to_string();
-        let all = npy::read_any_tactile(input)?;
+        let all = read_touch(input)?;
         let count = all.sensors();
         let truth = self.truth.read(count)?;
-        let Usable { tactile, sensors, dropped } = usable(all);
+        let Usable { tactile, sensors, dropped, lost_samples } = usable(all);
+        say_lost(input, lost_samples);
         if let Some((first, fault)) = dropped.first() {
             eprintln!(
                 "bodyschema: {}: {} of {count} sensors are left out (the first, {first}, is {fault}); see dropped.csv",
@@ -78,50 +93,63 @@ impl Estimate {
             );
         }
         ensure!(
-            sensors.len() >= 4,
-            "{}: {} sensors feel anything; four are the least",
+            sensors.len() >= MIN_SENSORS,
+            "{}: {} of {count} sensors feel anything that can be used, but parts can be told apart from {MIN_SENSORS} on; see `bodyschema tree` \
+             for parts that are known",
             in_file(),
             sensors.len()
         );
         prepare_folder(out)?;
-        let bar = progress(settings.schema.chains as u64, "estimate".to_owned());
+        let bar = progress(3, "estimate".to_owned());
         let mut rng = stream(seed, 1, "co-motion", 0);
-        let found = estimate(&tactile, &settings.quantise, &settings.schema, seed, &mut rng, &|| bar.inc(1))
-            .with_context(in_file)?;
+        let found = estimate(&tactile, &settings.quantise, &mut rng, &|| bar.inc(1));
         bar.finish_and_clear();
-        let summary = write(out, &found, &tactile, &sensors, &dropped, seed)?;
+        let read = Read { tactile: &tactile, sensors: &sensors, dropped: &dropped, lost_samples };
+        let summary = write(out, &found, &read, seed)?;
         say(format!(
-            "{} parts of {} sensors over {} samples (body map of {} dimensions; {} sensors mended), in {}",
+            "{} parts of {} sensors over {} samples, in {}",
             summary.parts,
             sensors.len(),
             summary.samples,
-            summary.dimensions,
-            summary.mended_sensors,
             out.display()
         ))?;
-        tree::print(&found.tree, &found.labels)?;
+        if summary.parts == 1 {
+            let left = mean(&found.parts.left).value.unwrap_or(0.0);
+            say(format!(
+                "no two parts can be told apart: one motion leaves {:.1} % of what the sensors feel unexplained{}",
+                100.0 * left,
+                if left < 0.05 { ", so that nothing moves against anything else" } else { "" }
+            ))?;
+        }
+        tree::print(&found.tree, &found.parts.labels)?;
         if let Some(truth) = truth {
             let own = sensors.iter().map(|&sensor| truth.labels[sensor]).collect();
-            let draw = tree::draw_of(found.labels, found.tree.tree);
+            let draw = tree::draw_of(found.parts.labels, found.tree.tree);
             tree::print_score(&draw, &Truth { labels: own, tree: truth.tree }, 1.0)?;
-        }
-        if let Some(what) = found.posterior.unmixed() {
-            eprintln!("bodyschema: the chains have not mixed: {what}; more schema.sweeps may help");
         }
         Ok(ExitCode::SUCCESS)
     }
 }
 
+/// What of the input was used.
+struct Read<'a> {
+    tactile: &'a Tactile,
+    sensors: &'a [usize],
+    dropped: &'a [(usize, Fault)],
+    lost_samples: usize,
+}
+
 /// Writes all files.
-fn write(
-    out: &Path,
-    found: &estimate::Estimate,
-    tactile: &Tactile,
-    sensors: &[usize],
-    dropped: &[(usize, Fault)],
-    seed: u64,
-) -> Result<Summary> {
-    write_parts(out, sensors.iter().copied(), &found.labels, &found.certainty)?;
+fn write(out: &Path, found: &estimate::Estimate, read: &Read, seed: u64) -> Result<Summary> {
+    let &Read { tactile, sensors, dropped, lost_samples } = read;
+    let parts = sensors.iter().enumerate().map(|(at, &sensor)| PartRow {
+        sensor,
+        part: found.parts.labels[at],
+        unexplained: found.parts.left[at],
+        next_part: found.parts.next[at].map(|(part, _)| part),
+        next_unexplained: found.parts.next[at].map(|(_, left)| left),
+    });
+    write_rows(&out.join("parts.csv"), parts)?;
     let row = |(sensor, fault): &(usize, Fault)| DroppedRow { sensor: *sensor, fault: fault.to_string() };
     write_rows(&out.join("dropped.csv"), dropped.iter().map(row))?;
     tree::write(out, &found.tree)?;
@@ -129,9 +157,9 @@ fn write(
         samples: tactile.samples,
         sensors: sensors.len() + dropped.len(),
         dropped: dropped.len(),
-        dimensions: found.map.dims,
+        lost_samples,
+        signed: is_signed(tactile),
         parts: found.tree.parts.len(),
-        mended_sensors: found.mended,
         seed,
         revision: env!("BODYSCHEMA_REVISION"),
     };

@@ -9,8 +9,9 @@ use serde::Serialize;
 
 use super::options::{TruthFiles, paper, with_default};
 use super::output::say;
+use crate::files::prepare_folder;
 use crate::files::tables::{read_parts, write_rows};
-use crate::files::{npy, prepare_folder};
+use crate::files::touch::read_touch;
 use crate::numerics::partition::sizes;
 use crate::numerics::rng::stream;
 use crate::report::text_tree::text_tree;
@@ -28,7 +29,7 @@ use crate::stages::usable::{Usable, only, usable};
 /// the share of trees over resampled times that have the edge.
 #[derive(Args)]
 pub struct Tree {
-    /// Pressures: a .npy file with a row for each sample and a column for each sensor
+    /// Pressures: a .npy or .csv file with a row for each sample and a column for each sensor
     tactile: PathBuf,
     /// Part of each sensor: a .csv file with columns sensor,part, such as parts.csv of infer; sensors without a row are
     /// left out
@@ -66,11 +67,12 @@ impl Tree {
     /// Runs the subcommand.
     pub fn run(self) -> Result<ExitCode> {
         let (input, out) = (&self.tactile, &self.out);
-        let all = npy::read_any_tactile(input)?;
+        let all = read_touch(input)?;
         let count = all.sensors();
         let parts = read_parts(&self.parts, count)?;
         let truth = self.truth.read(count)?;
-        let Usable { tactile, sensors, dropped } = usable(all);
+        let Usable { tactile, sensors, dropped, lost_samples } = usable(all);
+        say_lost(input, lost_samples);
         for (sensor, fault) in dropped.iter().filter(|(sensor, _)| parts[*sensor].is_some()) {
             eprintln!("bodyschema: {}: sensor {sensor} is {fault}, and is left out", input.display());
         }
@@ -89,6 +91,16 @@ impl Tree {
             print_score(&draw, &Truth { labels: own, tree: truth.tree }, 1.0)?;
         }
         Ok(ExitCode::SUCCESS)
+    }
+}
+
+/// Says how many samples were left out.
+pub fn say_lost(input: &Path, lost_samples: usize) {
+    if lost_samples > 0 {
+        eprintln!(
+            "bodyschema: {}: {lost_samples} samples are left out, because most sensors have no number there",
+            input.display()
+        );
     }
 }
 

@@ -1,6 +1,6 @@
 //! Read and write the description of a body: a TOML file with a table for each part.
 //!
-//! All places and directions are in one frame, in the rest pose; `docs/bodies.md` explains every key.
+//! All places and directions are in one frame, in the rest pose; `docs/body-files.md` explains every key.
 
 use std::path::Path;
 

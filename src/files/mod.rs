@@ -10,6 +10,7 @@ pub mod npy;
 pub(crate) mod provenance;
 pub(crate) mod result_folder;
 pub mod tables;
+pub mod touch;
 mod whole;
 
 pub use self::error::{FileError, one_line};

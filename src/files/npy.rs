@@ -1,5 +1,6 @@
 //! Read and write matrices as NumPy's `.npy` files: pressures, symbols, distances, body maps, assignments.
 
+use std::fmt::Display;
 use std::fs::File;
 use std::io::{self, BufRead, BufReader};
 use std::path::Path;
@@ -62,7 +63,7 @@ pub fn read_tactile(path: &Path) -> Result<Tactile, FileError> {
         value if value > f64::from(f32::MAX) => Err("a pressure must not exceed the largest float32"),
         value => Ok(value as f32),
     })?;
-    check_sensors(path, &matrix)?;
+    check_sensors(path, matrix.columns, matrix.rows)?;
     Ok(Tactile { samples: matrix.rows, pressures: matrix.values })
 }
 
@@ -72,19 +73,18 @@ pub fn read_any_tactile(path: &Path) -> Result<Tactile, FileError> {
     let finite = |value: f64| value.abs() <= f64::from(f32::MAX);
     let matrix =
         Matrix::read(path, Order::Fortran, |value| Ok(if finite(value) { value as f32 } else { f32::NAN }))?;
-    check_sensors(path, &matrix)?;
+    check_sensors(path, matrix.columns, matrix.rows)?;
     Ok(Tactile { samples: matrix.rows, pressures: matrix.values })
 }
 
 /// Refuses a matrix of too many columns, as one of sensors × times has: its distances would not fit the memory.
-fn check_sensors<T>(path: &Path, matrix: &Matrix<T>) -> Result<(), FileError> {
-    if matrix.columns <= MAX_SENSORS {
+pub(super) fn check_sensors(path: &Path, columns: usize, rows: impl Display) -> Result<(), FileError> {
+    if columns <= MAX_SENSORS {
         return Ok(());
     }
     let message = format!(
-        "has {} rows and {} columns; a row is a time and a column a sensor, and {MAX_SENSORS} sensors are the \
-         maximum: is it transposed?",
-        matrix.rows, matrix.columns
+        "has {rows} rows and {columns} columns; a row is a time and a column a sensor, and {MAX_SENSORS} sensors are the \
+         maximum: is it transposed?"
     );
     Err(FileError::new(path, message))
 }
@@ -99,7 +99,7 @@ pub fn read_symbols(path: &Path) -> Result<Symbols, FileError> {
             Err("a symbol must be a whole number from 0 to 255")
         }
     })?;
-    check_sensors(path, &matrix)?;
+    check_sensors(path, matrix.columns, matrix.rows)?;
     // Two at least: a single symbol is one that never changes.
     let levels = 2.max(1 + matrix.values.iter().copied().max().map_or(0, usize::from));
     Ok(Symbols { samples: matrix.rows, levels, values: matrix.values })

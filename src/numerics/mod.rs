@@ -1,6 +1,7 @@
-//! Numerical tools of all stages: random numbers, logarithms, vector instructions, eigenvalues, partitions, and ranges of settings.
+//! Numerical tools of all stages: random numbers, logarithms, vector instructions, eigenvalues, clusters, partitions, and ranges of settings.
 
 pub(crate) mod eigen;
+pub(crate) mod linkage;
 pub(crate) mod log_sum;
 pub mod partition;
 pub mod range;

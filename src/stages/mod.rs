@@ -3,7 +3,7 @@
 //! | stage | module | in → out | paper |
 //! |---|---|---|---|
 //! | – | [`agent`] | geometry, skin → [`Agent`](agent::Agent): parts, joints, sensors, and their true tree | section 5.1, figure 4 |
-//! | 1 | [`simulate`] | agent, motion → [`Trajectory`](simulate::Trajectory): T + 1 poses of each part (m), two angles of each joint (rad) | section 5.1 |
+//! | 1 | [`simulate`] | agent, motion → [`Trajectory`](simulate::Trajectory): T + 1 poses of each part (m), angles of each joint (rad) | section 5.1 |
 //! | 2 | [`sense`] | trajectory → [`Tactile`](sense::Tactile): pressures, M × T, Pa | equation 27 |
 //! | 3 | [`quantise`] | pressures → [`Symbols`](quantise::Symbols): M × T, 0 to N − 1 | section 4.1 |
 //! | 4 | [`distance`] | symbols → [`Distances`](distance::Distances): M × M, bits | equations 23 to 26 |
@@ -11,7 +11,7 @@
 //! | 6 | [`schema`] | body map → [`Draw`](schema::Draw)s: component of each sensor, tree | equations 1 to 22 |
 //! | 7 | [`evaluate`] | draw, truth → [`Score`](evaluate::Score): adjusted Rand index, tree right or wrong | section 5.2 |
 //!
-//! Beside the paper, [`usable`] drops sensors that tell nothing, and [`co_motion`] finds how given parts are joined.
+//! Beside the paper, [`usable`] drops sensors that tell nothing, and [`co_motion`] finds rigid parts and how they are joined.
 //! Beside stage 6, [`baselines`] cluster the same body map; [`mixture`] holds what both build on, [`tree`] the trees.
 //! M is the number of sensors, T the number of samples, N the number of levels, d the number of dimensions.
 //!

@@ -4,6 +4,8 @@
 
 use std::fmt::{self, Display, Formatter};
 
+use rayon::prelude::*;
+
 use crate::stages::sense::Tactile;
 
 /// Why a sensor tells nothing.
@@ -36,10 +38,13 @@ pub struct Usable {
     pub sensors: Vec<usize>,
     /// The other sensors, rising.
     pub dropped: Vec<(usize, Fault)>,
+    /// Samples that were left out, because more than half of the sensors have no number there.
+    pub lost_samples: usize,
 }
 
-/// Leaves out sensors that tell nothing.
+/// Leaves out samples at which most sensors have no number, and then sensors that tell nothing.
 pub fn usable(tactile: Tactile) -> Usable {
+    let (tactile, lost_samples) = without_lost_samples(tactile);
     let fault = |series: &[f32]| {
         if series.iter().any(|pressure| !pressure.is_finite()) {
             Some(Fault::NotFinite)
@@ -49,19 +54,47 @@ pub fn usable(tactile: Tactile) -> Usable {
             series.iter().all(|pressure| *pressure == series[0]).then_some(Fault::Constant)
         }
     };
-    let faults: Vec<Option<Fault>> = tactile.series().map(fault).collect();
+    let faults: Vec<Option<Fault>> = tactile.pressures.par_chunks_exact(tactile.samples).map(fault).collect();
     let dropped = faults.iter().enumerate().filter_map(|(sensor, fault)| Some((sensor, (*fault)?))).collect();
     let sensors: Vec<usize> = (0..faults.len()).filter(|sensor| faults[*sensor].is_none()).collect();
-    Usable { tactile: only(tactile, &sensors), sensors, dropped }
+    Usable { tactile: only(tactile, &sensors), sensors, dropped, lost_samples }
 }
 
-/// The pressures of some sensors, which rise.
-pub fn only(tactile: Tactile, sensors: &[usize]) -> Tactile {
-    if sensors.len() == tactile.sensors() {
-        return tactile;
+/// The pressures without samples at which more than half of the sensors have no number, such as a frame that was lost, and how
+/// many these are. If that is all of them, nothing is left out.
+fn without_lost_samples(mut tactile: Tactile) -> (Tactile, usize) {
+    let (samples, sensors) = (tactile.samples, tactile.sensors());
+    let mut missing = vec![0; samples];
+    for series in tactile.series().filter(|series| series.iter().any(|pressure| !pressure.is_finite())) {
+        missing
+            .iter_mut()
+            .zip(series)
+            .for_each(|(missing, pressure)| *missing += usize::from(!pressure.is_finite()));
     }
-    let series = |sensor: &usize| &tactile.pressures[sensor * tactile.samples..][..tactile.samples];
-    Tactile { samples: tactile.samples, pressures: sensors.iter().flat_map(series).copied().collect() }
+    let kept: Vec<usize> = (0..samples).filter(|t| 2 * missing[*t] <= sensors).collect();
+    if kept.is_empty() || kept.len() == samples {
+        return (tactile, 0);
+    }
+    let mut to = 0;
+    for sensor in 0..sensors {
+        for t in &kept {
+            tactile.pressures[to] = tactile.pressures[sensor * samples + t];
+            to += 1;
+        }
+    }
+    tactile.pressures.truncate(to);
+    tactile.samples = kept.len();
+    (tactile, samples - kept.len())
+}
+
+/// The pressures of some sensors, which rise. Nothing is copied to another place of the memory: it may be most of what there is.
+pub fn only(mut tactile: Tactile, sensors: &[usize]) -> Tactile {
+    let samples = tactile.samples;
+    for (at, sensor) in sensors.iter().enumerate().filter(|(at, sensor)| at != *sensor) {
+        tactile.pressures.copy_within(sensor * samples..(sensor + 1) * samples, at * samples);
+    }
+    tactile.pressures.truncate(sensors.len() * samples);
+    tactile
 }
 
 #[cfg(test)]
@@ -77,5 +110,16 @@ mod tests {
         assert_eq!(found.tactile.pressures, [1.0, 2.0, 0.0, -1.0]);
         let dropped = [(1, Fault::NotFinite), (2, Fault::Dead), (3, Fault::Constant), (5, Fault::NotFinite)];
         assert_eq!(found.dropped, dropped);
+    }
+
+    #[test]
+    fn a_lost_frame_costs_a_sample_and_no_sensor() {
+        let nan = f32::NAN;
+        let pressures = vec![1.0, nan, 2.0, 3.0, 4.0, nan, 5.0, 6.0, nan, 1.0, 2.0, 3.0];
+        let found = usable(Tactile { samples: 4, pressures });
+        assert_eq!((found.lost_samples, found.tactile.samples), (1, 3));
+        assert_eq!(found.sensors, [0, 1]);
+        assert_eq!(found.tactile.pressures, [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
+        assert_eq!(found.dropped, [(2, Fault::NotFinite)]);
     }
 }

@@ -8,7 +8,7 @@ use super::motion::Motion;
 /// Weight of a time at which the whole body hardly moves, in units of its mean square.
 const REST: f64 = 1e-3;
 /// What is added to the variances of products, as a share of their mean: forms of hardly any variance are noise.
-const RIDGE: f64 = 1e-3;
+const RIDGE: f64 = 1e-5;
 
 /// Sums over times of the products of all quadratic monomials of all motions, by blocks of times.
 #[derive(Debug, Clone)]
@@ -50,7 +50,7 @@ impl Moments {
                     }
                 }
             }
-            monomials.tr_mul(&monomials)
+            monomials.transpose() * &monomials
         };
         let blocks = if mean > 0.0 { (0..blocks).into_par_iter().map(block).collect() } else { Vec::new() };
         Self { starts, blocks }
@@ -66,7 +66,7 @@ impl Moments {
         let all = self.starts[self.starts.len() - 1];
         let mut sum = DMatrix::zeros(all, all);
         for (block, &count) in self.blocks.iter().zip(counts).filter(|(_, count)| **count > 0) {
-            sum += block * count as f64;
+            sum.zip_apply(block, |sum, moment| *sum += moment * count as f64);
         }
         sum
     }

@@ -1,134 +1,318 @@
-//! Mend estimated parts by what a rigid body is: one motion explains all that its sensors feel.
+//! Find the parts: sensors are on one part if one motion explains all that they feel, because a part is rigid.
 //!
-//! In: pressures and an estimated part of each sensor. Out: parts without those that are pieces of others, and each sensor
-//! on the part whose motion explains it best. A part that is two parts in truth is not taken apart.
+//! In: pressures, and the distances between sensors. Out: the [part](RigidParts) of each sensor. The number of parts is found,
+//! too. Neighbours in the distances make small pieces, which nearly always are pieces of one part. Then, in turns, two sets of
+//! sensors become one where that [costs](cost) least, and each sensor goes to the set whose motion leaves least of it.
+//!
+//! The cost of a set is what it takes to tell what its sensors feel up to a tolerance: for each component of its motion half
+//! the logarithm of its variance, and for each root beyond these half that of what is left of it, both over the tolerance
+//! (the likelihood of probabilistic principal components, Tipping and Bishop 1999; here over roots that tell something), and
+//! half a logarithm of the number of times for each c. Two sets of one part share components, so that one of both costs less.
 
-use std::cmp::Ordering;
+use std::collections::BTreeMap;
 
+use kodama::Method;
+use nalgebra::SMatrix;
 use rayon::prelude::*;
 
-use super::motion::Felt;
-use crate::numerics::partition::{named_by_appearance, sizes};
+use super::censored::{Column, Fit, MAX_COMPONENTS, Roots};
+use super::motion::{is_signed, spread};
+use crate::numerics::linkage;
+use crate::numerics::partition::named_by_appearance;
+use crate::stages::distance::Distances;
 use crate::stages::sense::Tactile;
 
-/// Most turns, in each of which sensors move, or two parts become one.
-const ROUNDS: usize = 20;
-/// What a motion of both may leave of the sensors' squares beyond what two motions leave, on the mean over sensors, so that
-/// both are one part.
-const SAME: f64 = 0.03;
-/// What another part's motion may leave beyond what its own leaves, so that both are looked at together.
-const PERHAPS: f64 = 0.3;
-/// The difference of shares up to which two motions explain a sensor alike.
-const NEARLY: f64 = 0.01;
+/// Sensors of a piece, on the mean.
+const PIECE: usize = 6;
 
-/// Parts that are rigid: an estimated part for each sensor, named 0, 1, … in order of appearance.
+/// Most pieces.
+const MAX_PIECES: usize = 100;
+/// Times that are read: for the many pieces, and for the few parts.
+const TIMES: [usize; 2] = [500, 2000];
+/// Times, for each that is read, that it is chosen from, spread over all.
+const CHOICE: usize = 4;
+/// Turns in which the motion of the body as a whole is found.
+const FEW_ROUNDS: usize = 3;
+/// Turns in which a motion is found.
+const ROUNDS: usize = 6;
+
+/// Sensors of a set that its motion is found from, spread over all.
+const MAX_SENSORS: usize = 64;
+/// Sets that a set is tried with, the nearest: of the many pieces, and of the few parts.
+const NEAR: [usize; 2] = [6, 3];
+/// The share of a sensor's squares that is left unexplained without cost.
+const TOLERANCE: f64 = 0.01;
+/// What one set of two must cost less than both, for each time: it must be seen that they share a component.
+const MARGIN: f64 = 1.0;
+
+/// Roots beyond its components that a part must have at a time, on the mean. With fewer, any sensors fit.
+const SUPPORT: f64 = 1.0;
+/// Components that the motion of a small part must have: of one with less than half of the sensors that a part has in the
+/// middle. What feels fewer is no skin of a part, but a few sensors, such as those on the ends of cylinders, that feel alike
+/// on several parts.
+const LEAST_COMPONENTS: usize = 3;
+
+/// Most times that sensors go to the set that leaves least of them.
+const EXCHANGES: usize = 10;
+/// Most times that sets become one and sensors move.
+const CYCLES: usize = 4;
+
+/// Parts, and how well they explain what their sensors feel.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RigidParts {
+    /// The part of each sensor, 0, 1, … in order of appearance.
+    pub labels: Vec<usize>,
+    /// The share of each sensor's squares that the motion of its part leaves.
+    pub left: Vec<f64>,
+    /// The part whose motion leaves least of the others, and that share; `None` if there is no other part.
+    pub next: Vec<Option<(usize, f64)>>,
+}
+
+/// Finds the parts.
 ///
-/// In: M × T pressures, of any sign, and the estimated part of each sensor, any numbers.
-pub fn rigid_parts(tactile: &Tactile, labels: &[usize]) -> Vec<usize> {
-    let felt = Felt::new(tactile);
-    let mut labels = named_by_appearance(labels);
-    for _ in 0..ROUNDS {
-        let left = Left::new(&felt, &labels);
-        let moved = named_by_appearance(&left.best_parts(&labels));
-        if moved != labels {
+/// In: M × T pressures, of any sign, of sensors that all change; and the distances between `sensors`, which are spread over all
+/// of them. The others go to the part whose motion leaves least of them.
+pub fn rigid_parts(tactile: &Tactile, sensors: &[usize], distances: &Distances) -> RigidParts {
+    let signed = is_signed(tactile);
+    let all: Vec<&[f32]> = tactile.series().collect();
+    let some: Vec<&[f32]> = sensors.iter().map(|&sensor| all[sensor]).collect();
+    let times = TIMES.map(|count| telling_times(&some, tactile.samples, signed, count));
+    let roots = |series: &[&[f32]], times: &[usize]| Roots::at(series, times, signed).normalised();
+    let n = sensors.len();
+    let pieces = (n / PIECE).clamp(1, MAX_PIECES);
+    let mut labels = linkage::clusters(n, |i, j| distances.get(i, j), Method::Average, pieces);
+    let search = Search { roots: roots(&some, &times[0]), distances };
+    labels = search.exchanged(search.merged(labels, NEAR[0], 0.0), false);
+    labels = search.settled(labels, usize::MAX);
+    let search = Search { roots: roots(&some, &times[1]), distances };
+    labels = search.settled(labels, NEAR[1]);
+    assigned(&search.roots, &labels, &roots(&all, &times[1]))
+}
+
+/// So many times at which the body moves least as one, of [`CHOICE`] times as many. Where joints are locked, parts are one for a
+/// while, and such times say nothing of them.
+fn telling_times(series: &[&[f32]], samples: usize, signed: bool, count: usize) -> Vec<usize> {
+    let times: Vec<usize> = spread(samples, CHOICE * count).collect();
+    let some: Vec<&[f32]> = spread(series.len(), MAX_SENSORS).map(|sensor| series[sensor]).collect();
+    let roots = Roots::at(&some, &times, signed).normalised();
+    let fit = roots.fit(&roots.start(), MAX_COMPONENTS.min(some.len()), FEW_ROUNDS);
+    let mut order: Vec<(f64, usize)> = roots.left_at_times(&fit).into_iter().zip(times).collect();
+    order.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let mut chosen: Vec<usize> = order.into_iter().take(count).map(|(_, t)| t).collect();
+    chosen.sort_unstable();
+    chosen
+}
+
+/// Sensors whose sets are looked for.
+struct Search<'a> {
+    roots: Roots,
+    distances: &'a Distances,
+}
+
+/// A set of sensors.
+struct Set {
+    sensors: Vec<usize>,
+    cost: f64,
+    components: usize,
+}
+
+impl Search<'_> {
+    /// Makes one of two sets, of each and its `near` nearest, and moves sensors, until nothing changes.
+    fn settled(&self, mut labels: Vec<usize>, near: usize) -> Vec<usize> {
+        for _ in 0..CYCLES {
+            let before = labels.clone();
+            labels = self.exchanged(self.merged(labels, near, MARGIN), true);
+            if labels == before {
+                break;
+            }
+        }
+        labels
+    }
+
+    /// Makes one of two sets, of each and its `near` nearest, where that saves most, as long as it saves more than `margin`.
+    fn merged(&self, labels: Vec<usize>, near: usize, margin: f64) -> Vec<usize> {
+        let first: Vec<Set> =
+            members(&labels).into_par_iter().map(|own| self.set(own, 1, MAX_COMPONENTS)).collect();
+        let mut sets: BTreeMap<usize, Set> = first.into_iter().enumerate().collect();
+        let mut tried: BTreeMap<(usize, usize), Set> = BTreeMap::new();
+        let mut name = sets.len();
+        while sets.len() > 1 {
+            let new: Vec<(usize, usize)> =
+                self.pairs(&sets, near).into_iter().filter(|pair| !tried.contains_key(pair)).collect();
+            let made = new.into_par_iter().map(|(a, b)| ((a, b), self.union(&sets[&a], &sets[&b])));
+            tried.extend(made.collect::<Vec<_>>());
+            let saved = |(&(a, b), both): (&(usize, usize), &Set)| sets[&a].cost + sets[&b].cost - both.cost;
+            let Some((most, pair)) = tried
+                .iter()
+                .map(|entry| (saved(entry), *entry.0))
+                .reduce(|best, other| if other.0 > best.0 { other } else { best })
+            else {
+                break;
+            };
+            if most <= margin {
+                break;
+            }
+            let both = tried.remove(&pair).expect("it is the best of those tried");
+            tried.retain(|(a, b), _| ![pair.0, pair.1].iter().any(|gone| a == gone || b == gone));
+            sets.retain(|name, _| *name != pair.0 && *name != pair.1);
+            sets.insert(name, both);
+            name += 1;
+        }
+        let mut labels = labels;
+        for (at, set) in sets.values().enumerate() {
+            set.sensors.iter().for_each(|&sensor| labels[sensor] = at);
+        }
+        named_by_appearance(&labels)
+    }
+
+    /// Each set with its nearest ones.
+    fn pairs(&self, sets: &BTreeMap<usize, Set>, near: usize) -> Vec<(usize, usize)> {
+        let apart = |a: &Set, b: &Set| {
+            let sum: f64 = a
+                .sensors
+                .iter()
+                .flat_map(|&i| b.sensors.iter().map(move |&j| self.distances.get(i, j)))
+                .sum();
+            sum / (a.sensors.len() * b.sensors.len()) as f64
+        };
+        let nearest = |(&name, set): (&usize, &Set)| {
+            let mut others: Vec<(f64, usize)> = sets
+                .iter()
+                .filter(|(other, _)| **other != name)
+                .map(|(other, own)| (if near < sets.len() { apart(set, own) } else { 0.0 }, *other))
+                .collect();
+            others.sort_by(|a, b| a.0.total_cmp(&b.0));
+            others
+                .into_iter()
+                .take(near)
+                .map(|(_, other)| (name.min(other), name.max(other)))
+                .collect::<Vec<_>>()
+        };
+        let mut pairs: Vec<(usize, usize)> =
+            sets.iter().collect::<Vec<_>>().into_par_iter().flat_map_iter(nearest).collect();
+        pairs.sort_unstable();
+        pairs.dedup();
+        pairs
+    }
+
+    fn union(&self, a: &Set, b: &Set) -> Set {
+        let sensors = [a.sensors.as_slice(), &b.sensors].concat();
+        self.set(sensors, a.components.max(b.components), a.components + b.components)
+    }
+
+    /// A set, with the number of components, in a range, that makes it cost least.
+    fn set(&self, sensors: Vec<usize>, least: usize, most: usize) -> Set {
+        let (cost, fit) = best_fit(&self.roots, &sensors, least, most);
+        Set { sensors, cost, components: fit.components }
+    }
+
+    /// Moves each sensor to the set whose motion leaves least of it, until none moves. Where only parts are admitted, sets that
+    /// cannot be one go.
+    fn exchanged(&self, mut labels: Vec<usize>, only_parts: bool) -> Vec<usize> {
+        for _ in 0..EXCHANGES {
+            let fits = fits(&self.roots, &labels);
+            let mut sizes: Vec<usize> = fits.iter().map(|fit| fit.loadings.len()).collect();
+            sizes.sort_unstable();
+            let small = sizes[sizes.len() / 2].div_ceil(2);
+            let can_be = |fit: &&Fit| {
+                let is_skin = fit.components >= LEAST_COMPONENTS || fit.loadings.len() >= small;
+                fit.spare >= SUPPORT && is_skin
+            };
+            let parts: Vec<&Fit> = fits.iter().filter(can_be).collect();
+            let kept = if only_parts && !parts.is_empty() { parts } else { fits.iter().collect() };
+            let best = |sensor: usize| {
+                let left = kept.iter().map(|fit| self.roots.left(sensor, &fit.motions, fit.components));
+                least(left).map_or(0, |(part, _)| part)
+            };
+            let moved = named_by_appearance(&(0..labels.len()).into_par_iter().map(best).collect::<Vec<_>>());
+            if moved == labels {
+                break;
+            }
             labels = moved;
-        } else if let Some((kept, other)) = left.same_parts(&felt, &labels) {
-            labels.iter_mut().filter(|label| **label == other).for_each(|label| *label = kept);
-            labels = named_by_appearance(&labels);
+        }
+        labels
+    }
+}
+
+/// The motion of some sensors, with the number of components, in a range, that makes it cost least.
+fn best_fit(roots: &Roots, sensors: &[usize], least: usize, most: usize) -> (f64, Fit) {
+    let own: Vec<usize> = spread(sensors.len(), MAX_SENSORS).map(|at| sensors[at]).collect();
+    let roots = roots.select(&own);
+    let (start, most) = (roots.start(), most.min(MAX_COMPONENTS).min(own.len()));
+    let try_with = |k: usize| {
+        let fit = roots.fit(&start, k, ROUNDS);
+        (cost(&fit, sensors.len()), fit)
+    };
+    // Costs fall with the number of components, and then rise; one step up may be a start that was not good.
+    let mut best = try_with(least.min(most));
+    let mut worse = 0;
+    for k in best.1.components + 1..=most {
+        let next = try_with(k);
+        if next.0 < best.0 {
+            (best, worse) = (next, 0);
         } else {
+            worse += 1;
+        }
+        if worse == 2 {
             break;
         }
     }
-    labels
+    best
 }
 
-/// What the motion of each part leaves unexplained.
-struct Left {
-    /// The share of each sensor's squares: sensors × parts.
-    shares: Vec<Vec<f64>>,
-    /// Components of each part's motion.
-    components: Vec<usize>,
+/// The motion of each set.
+fn fits(roots: &Roots, labels: &[usize]) -> Vec<Fit> {
+    members(labels).into_par_iter().map(|own| best_fit(roots, &own, 1, MAX_COMPONENTS).1).collect()
 }
 
-impl Left {
-    fn new(felt: &Felt, labels: &[usize]) -> Self {
-        let parts = sizes(labels).len();
-        let (motions, components): (Vec<_>, Vec<usize>) =
-            (0..parts).map(|part| felt.motions(&sensors_of(labels, part), None)).unzip();
-        let left = |sensor: usize| motions.iter().map(|motions| felt.left(sensor, motions)).collect();
-        Self { shares: (0..labels.len()).into_par_iter().map(left).collect(), components }
+/// What it takes to tell what a set of sensors feels, for each time, in nats; see the head of this file.
+fn cost(fit: &Fit, sensors: usize) -> f64 {
+    let times = fit.motions.len() as f64;
+    let k = fit.components as f64;
+    // The fit may be of a share of the sensors only.
+    let ratio = sensors as f64 / fit.loadings.len() as f64;
+    let outer = |w: &Column| w * w.transpose();
+    let mut scatter: SMatrix<f64, MAX_COMPONENTS, MAX_COMPONENTS> = fit.motions.iter().map(outer).sum();
+    // Half of the sensors feel a motion, the others its opposite; with signs, all feel it, which adds a constant.
+    scatter *= ratio / (2.0 * times * TOLERANCE);
+    let components: f64 =
+        scatter.symmetric_eigenvalues().iter().map(|variance| variance.max(0.0).ln_1p()).sum();
+    let excess = if fit.spare > 0.0 { (fit.residual / fit.spare / TOLERANCE).max(1.0).ln() } else { 0.0 };
+    0.5 * (components + ratio * fit.spare * excess + sensors as f64 * k * times.ln() / times)
+}
+
+/// The sensors of each set.
+fn members(labels: &[usize]) -> Vec<Vec<usize>> {
+    let mut members = vec![Vec::new(); labels.iter().max().map_or(0, |last| last + 1)];
+    labels.iter().enumerate().for_each(|(sensor, &label)| members[label].push(sensor));
+    members
+}
+
+/// The first of the smallest numbers.
+fn least(values: impl Iterator<Item = f64>) -> Option<(usize, f64)> {
+    values.enumerate().reduce(|best, other| if other.1 < best.1 { other } else { best })
+}
+
+/// The part of all sensors, from those of some, by the motions of their parts.
+fn assigned(some: &Roots, labels: &[usize], all: &Roots) -> RigidParts {
+    let fits = fits(some, labels);
+    let ranked = |sensor: usize| {
+        let left = |(part, fit): (usize, &Fit)| (all.left(sensor, &fit.motions, fit.components), part);
+        let mut shares: Vec<(f64, usize)> = fits.iter().enumerate().map(left).collect();
+        shares.sort_by(|a, b| a.0.total_cmp(&b.0));
+        (shares[0], shares.get(1).copied())
+    };
+    let ranked: Vec<_> = (0..all.sensors()).into_par_iter().map(ranked).collect();
+    let found: Vec<usize> = ranked.iter().map(|(own, _)| own.1).collect();
+    let labels = named_by_appearance(&found);
+    let names: BTreeMap<usize, usize> = found.iter().copied().zip(labels.iter().copied()).collect();
+    let next = |other: Option<(f64, usize)>| other.and_then(|(left, part)| Some((*names.get(&part)?, left)));
+    RigidParts {
+        left: ranked.iter().map(|(own, _)| own.0).collect(),
+        next: ranked.iter().map(|(_, other)| next(*other)).collect(),
+        labels,
     }
-
-    /// For each sensor the part whose motion has fewest components of those that explain it nearly as well as any: a motion
-    /// of more may owe them to sensors of other parts. Of equal ones, that which leaves least, and the sensor's own.
-    fn best_parts(&self, labels: &[usize]) -> Vec<usize> {
-        let best = |(left, &own): (&Vec<f64>, &usize)| {
-            let least = left.iter().copied().fold(f64::INFINITY, f64::min);
-            let order = |part: usize| (self.components[part], left[part], part != own);
-            let near = (0..left.len()).filter(|part| left[*part] <= least + NEARLY);
-            near.min_by(|a, b| order(*a).partial_cmp(&order(*b)).unwrap_or(Ordering::Equal)).unwrap_or(own)
-        };
-        self.shares.iter().zip(labels).map(best).collect()
-    }
-
-    /// Two parts that one motion of no more components explains nearly as well as their own do. Those come first whose
-    /// motions explain each other's sensors best.
-    fn same_parts(&self, felt: &Felt, labels: &[usize]) -> Option<(usize, usize)> {
-        let parts = self.components.len();
-        let mean =
-            |of: &[usize], by: usize| mean_of(of.iter().map(|sensor| self.shares[*sensor][by]).collect());
-        let own: Vec<Vec<usize>> = (0..parts).map(|part| sensors_of(labels, part)).collect();
-        let apart = |a: usize, b: usize| {
-            (mean(&own[a], b) - mean(&own[a], a)).max(mean(&own[b], a) - mean(&own[b], b))
-        };
-        let pairs = (0..parts).flat_map(|a| (a + 1..parts).map(move |b| (a, b)));
-        let mut near: Vec<(f64, usize, usize)> = pairs.map(|(a, b)| (apart(a, b), a, b)).collect();
-        near.retain(|(apart, ..)| *apart <= PERHAPS);
-        near.sort_by(|one, other| one.0.total_cmp(&other.0));
-        let is_one = |a: usize, b: usize| {
-            let both = [own[a].as_slice(), &own[b]].concat();
-            let components = self.components[a].max(self.components[b]);
-            let (motions, _) = felt.motions(&both, Some(components));
-            let together = mean_of(both.par_iter().map(|sensor| felt.left(*sensor, &motions)).collect());
-            let alone = mean_of(both.iter().map(|sensor| self.shares[*sensor][labels[*sensor]]).collect());
-            together - alone <= SAME
-        };
-        near.into_iter().map(|(_, a, b)| (a, b)).find(|(a, b)| is_one(*a, *b))
-    }
-}
-
-/// The sensors of a part.
-fn sensors_of(labels: &[usize], part: usize) -> Vec<usize> {
-    (0..labels.len()).filter(|sensor| labels[*sensor] == part).collect()
-}
-
-fn mean_of(shares: Vec<f64>) -> f64 {
-    shares.iter().sum::<f64>() / shares.len() as f64
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::numerics::rng::stream;
-    use crate::stages::agent::{Agent, Skin};
-    use crate::stages::sense::{Sense, sense};
-    use crate::stages::simulate::fixtures::{INTERVAL, Scene};
-    use crate::stages::simulate::simulate;
-
-    #[test]
-    fn pieces_become_parts_and_sensors_go_to_theirs() {
-        let mut scene = Scene::new();
-        (scene.motion.coordination, scene.physics.duration) = (0.5, 1000.0);
-        let agent = Agent::new(&scene.geometry, &Skin { around: 8, along: 4, caps: 0 });
-        let rng = &mut stream(3, 1, "motion", 0);
-        let trajectory = simulate(&agent, &scene.motion, &scene.physics, INTERVAL, rng, &|| ()).unwrap();
-        let tactile = sense(&agent, &trajectory, &Sense { interval: INTERVAL, fluid_density: 1010.0 });
-        let truth = agent.labels();
-        assert_eq!(rigid_parts(&tactile, &truth), truth);
-        let mut mixed = truth.clone();
-        // Half of the first part is a part of its own, and four sensors of the third are on the fourth.
-        mixed[16..32].fill(9);
-        mixed[64..68].fill(3);
-        assert_eq!(rigid_parts(&tactile, &mixed), truth);
-    }
-}
+mod tests;

@@ -81,11 +81,15 @@ pub fn co_motion(
     let pairs = (0..parts.len()).flat_map(|a| (a + 1..parts.len()).map(move |b| (a, b)));
     let is_edge =
         |a: usize, b: usize| tree.iter().any(|edge| [(a, b), (b, a)].contains(&(edge.child, edge.parent)));
+    // An edge of two parts that know nothing of each other is in a tree by its place in the list alone.
+    let confidence = |a: usize, b: usize| {
+        if agreement[(a, b)] > 0.0 { joined[(a, b)] as f64 / RESAMPLES as f64 } else { 0.0 }
+    };
     let pair = |(a, b): (usize, usize)| Pair {
         part: parts[a],
         other: parts[b],
         agreement: agreement[(a, b)],
-        confidence: joined[(a, b)] as f64 / RESAMPLES as f64,
+        confidence: confidence(a, b),
         in_tree: is_edge(a, b),
     };
     CoMotion {

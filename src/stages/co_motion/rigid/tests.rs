@@ -1,0 +1,59 @@
+//! Test that parts are found from touch on a simulated body.
+
+use super::*;
+use crate::numerics::partition::adjusted_rand_index;
+use crate::numerics::rng::stream;
+use crate::stages::agent::{Agent, Skin};
+use crate::stages::distance::information_metric;
+use crate::stages::quantise::{Quantise, Scheme, quantise};
+use crate::stages::sense::{Sense, sense};
+use crate::stages::simulate::fixtures::{INTERVAL, Scene};
+use crate::stages::simulate::simulate;
+
+fn tactile() -> (Tactile, Vec<usize>) {
+    let mut scene = Scene::new();
+    (scene.motion.coordination, scene.physics.duration) = (0.5, 1000.0);
+    let agent = Agent::new(&scene.geometry, &Skin { around: 8, along: 4, caps: 0 });
+    let rng = &mut stream(3, 1, "motion", 0);
+    let trajectory = simulate(&agent, &scene.motion, &scene.physics, INTERVAL, rng, &|| ()).unwrap();
+    (sense(&agent, &trajectory, &Sense { interval: INTERVAL, fluid_density: 1010.0 }), agent.labels())
+}
+
+fn distances(tactile: &Tactile) -> Distances {
+    information_metric(&quantise(tactile, &Quantise { levels: 8, scheme: Scheme::PerSensor }))
+}
+
+#[test]
+fn parts_and_their_number_are_found_from_pieces() {
+    let (tactile, truth) = tactile();
+    let all: Vec<usize> = (0..truth.len()).collect();
+    let found = rigid_parts(&tactile, &all, &distances(&tactile));
+    assert_eq!(found.labels, truth);
+    assert!(found.left.iter().all(|left| *left < 0.1));
+    assert!(found.left.iter().zip(&found.next).all(|(left, next)| next.unwrap().1 > *left));
+}
+
+#[test]
+fn sensors_without_distances_go_to_the_part_that_explains_them() {
+    let (tactile, truth) = tactile();
+    let some: Vec<usize> = (0..truth.len()).filter(|sensor| sensor % 3 != 0).collect();
+    let series: Vec<&[f32]> = tactile.series().collect();
+    let pressures = some.iter().flat_map(|&sensor| series[sensor]).copied().collect();
+    let found = rigid_parts(&tactile, &some, &distances(&Tactile { samples: tactile.samples, pressures }));
+    assert!(adjusted_rand_index(&found.labels, &truth) > 0.99);
+}
+
+#[test]
+fn a_set_of_two_parts_costs_more_than_both() {
+    let (tactile, truth) = tactile();
+    let series: Vec<&[f32]> = tactile.series().collect();
+    let roots = Roots::at(&series, &telling_times(&series, tactile.samples, false, 500), false).normalised();
+    let own = |parts: &[usize]| {
+        (0..truth.len()).filter(|sensor| parts.contains(&truth[*sensor])).collect::<Vec<_>>()
+    };
+    let cost = |sensors: &[usize]| best_fit(&roots, sensors, 1, MAX_COMPONENTS).0;
+    assert!(cost(&own(&[1, 2])) > cost(&own(&[1])) + cost(&own(&[2])) + MARGIN);
+    // The halves of one part cost more than the whole.
+    let (first, second): (Vec<usize>, Vec<usize>) = own(&[2]).into_iter().partition(|sensor| sensor % 2 == 0);
+    assert!(cost(&own(&[2])) + MARGIN < cost(&first) + cost(&second));
+}

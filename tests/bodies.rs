@@ -1,0 +1,65 @@
+//! Every body of the folder `bodies` is one, and can be simulated.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use bodyschema::files::body::{NamedBody, read_body};
+
+fn bodies() -> Vec<(PathBuf, NamedBody)> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("bodies");
+    let mut paths: Vec<PathBuf> = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    paths.sort();
+    paths.into_iter().map(|path| (path.clone(), read_body(&path).unwrap())).collect()
+}
+
+#[test]
+fn each_is_a_tree_whose_parts_all_have_a_skin() {
+    let bodies = bodies();
+    assert!(bodies.len() >= 12);
+    for (path, NamedBody { agent, names }) in bodies {
+        let truth = agent.truth();
+        assert_eq!((truth.parts(), truth.tree.len() + 1), (names.len(), names.len()), "{path:?}");
+        for (part, name) in names.iter().enumerate() {
+            let own = truth.labels.iter().filter(|label| **label == part).count();
+            assert!(own >= 24, "{path:?}: {name} has {own} sensors");
+        }
+    }
+}
+
+#[test]
+fn a_body_is_simulated_and_its_parts_are_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    fs::write(at("short.toml"), "[physics]\nduration = 20.0\n").unwrap();
+    let simulate = |body: &Path| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_bodyschema"));
+        command.current_dir(&folder).args([
+            "simulate",
+            "--settings",
+            "short.toml",
+            "--out",
+            "moved",
+            "--body",
+        ]);
+        command.arg(body).output().unwrap()
+    };
+    let human = Path::new(env!("CARGO_MANIFEST_DIR")).join("bodies/human.toml");
+    let output = simulate(&human);
+    assert!(output.status.success(), "{output:?}");
+    let told = String::from_utf8(output.stdout).unwrap();
+    assert!(told.starts_with("200 samples of 634 sensors on 13 parts"), "{told}");
+    let names = fs::read_to_string(at("moved/names.csv")).unwrap();
+    assert!(names.starts_with("part,name\n0,pelvis\n1,chest\n"), "{names}");
+    // Three universal joints, five balls and four hinges.
+    let angles = fs::read_to_string(at("moved/joint-angles.csv")).unwrap();
+    let header = angles.lines().next().unwrap();
+    assert_eq!(header.split(',').count() - 1, 3 * 2 + 5 * 3 + 4, "{header}");
+    assert!(header.contains("joint2_angle3_rad,joint3_angle1_rad"), "{header}");
+
+    fs::write(at("wrong.toml"), "[[part]]\nname = \"trunk\"\nshape = \"sphere\"\nradius = 0.1\n").unwrap();
+    let output = simulate(&at("wrong.toml"));
+    let told = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    assert!(told.contains("part `trunk`: it lacks centre") && told.lines().count() == 1, "{told}");
+}
