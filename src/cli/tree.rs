@@ -19,7 +19,7 @@ use crate::stages::co_motion::{CoMotion, MAX_COMPONENTS, Pair, co_motion};
 use crate::stages::evaluate::score;
 use crate::stages::schema::Draw;
 use crate::stages::tree::{Edge, Truth};
-use crate::stages::usable::{Usable, only, usable};
+use crate::stages::usable::{Usable, usable};
 
 /// How given parts are joined, from what they feel of their joints (not in the paper).
 ///
@@ -76,17 +76,18 @@ impl Tree {
         for (sensor, fault) in dropped.iter().filter(|(sensor, _)| parts[*sensor].is_some()) {
             eprintln!("bodyschema: {}: sensor {sensor} is {fault}, and is left out", input.display());
         }
-        let kept: Vec<usize> = (0..sensors.len()).filter(|at| parts[sensors[*at]].is_some()).collect();
-        let labels: Vec<usize> = kept.iter().filter_map(|&at| parts[sensors[at]]).collect();
+        let own: Vec<Option<usize>> = sensors.iter().map(|&sensor| parts[sensor]).collect();
+        let labels: Vec<usize> = own.iter().copied().flatten().collect();
         ensure!(!labels.is_empty(), "{}: no sensor that has a part feels anything", input.display());
         prepare_folder(out)?;
         let mut rng = stream(self.seed.unwrap_or(paper().experiment.seed), 1, "co-motion", 0);
         let components = self.components.map(|k| k as usize);
-        let found = co_motion(&only(tactile, &kept), &labels, components, &mut rng);
+        let found = co_motion(&tactile, &own, components, &mut rng);
         write(out, &found)?;
         print(&found, &labels)?;
         if let Some(truth) = truth {
-            let own = kept.iter().map(|&at| truth.labels[sensors[at]]).collect();
+            let kept = sensors.iter().zip(&own).filter(|(_, part)| part.is_some());
+            let own = kept.map(|(&sensor, _)| truth.labels[sensor]).collect();
             let draw = draw_of(labels, found.tree);
             print_score(&draw, &Truth { labels: own, tree: truth.tree }, 1.0)?;
         }

@@ -2,7 +2,8 @@
 //!
 //! In: pressures, and the distances between sensors. Out: the [part](RigidParts) of each sensor. The number of parts is found,
 //! too. Neighbours in the distances make small pieces, which nearly always are pieces of one part. Then, in turns, two sets of
-//! sensors become one where that [costs](cost) least, and each sensor goes to the set whose motion leaves least of it.
+//! sensors become one where that [costs](cost) least, and each sensor goes to the set whose motion leaves least of it. A part
+//! that one motion does not explain at the times that tell most of it is looked at anew, by itself.
 //!
 //! The cost of a set is what it takes to tell what its sensors feel up to a tolerance: for each component of its motion half
 //! the logarithm of its variance, and for each root beyond these half that of what is left of it, both over the tolerance
@@ -31,6 +32,8 @@ const MAX_PIECES: usize = 100;
 const TIMES: [usize; 2] = [500, 2000];
 /// Times, for each that is read, that it is chosen from, spread over all.
 const CHOICE: usize = 4;
+/// The share of squares that a motion must leave, of roots beyond its components, so that a part may be several.
+const UNEXPLAINED: f64 = 0.05;
 /// Turns in which the motion of the body as a whole is found.
 const FEW_ROUNDS: usize = 3;
 /// Turns in which a motion is found.
@@ -76,31 +79,93 @@ pub fn rigid_parts(tactile: &Tactile, sensors: &[usize], distances: &Distances) 
     let signed = is_signed(tactile);
     let all: Vec<&[f32]> = tactile.series().collect();
     let some: Vec<&[f32]> = sensors.iter().map(|&sensor| all[sensor]).collect();
-    let times = TIMES.map(|count| telling_times(&some, tactile.samples, signed, count));
-    let roots = |series: &[&[f32]], times: &[usize]| Roots::at(series, times, signed).normalised();
-    let n = sensors.len();
-    let pieces = (n / PIECE).clamp(1, MAX_PIECES);
-    let mut labels = linkage::clusters(n, |i, j| distances.get(i, j), Method::Average, pieces);
-    let search = Search { roots: roots(&some, &times[0]), distances };
-    labels = search.exchanged(search.merged(labels, NEAR[0], 0.0), false);
-    labels = search.settled(labels, usize::MAX);
-    let search = Search { roots: roots(&some, &times[1]), distances };
-    labels = search.settled(labels, NEAR[1]);
-    assigned(&search.roots, &labels, &roots(&all, &times[1]))
+    let body = Body { series: some, signed, distances };
+    let every: Vec<usize> = (0..sensors.len()).collect();
+    let times = body.telling_times(&every);
+    let found = body.parts_of(&every, &times);
+    let labels = body.taken_apart(found.clone());
+    let fine = Search { roots: body.roots(&every, &times[1]), distances };
+    let labels = if labels == found { labels } else { fine.exchanged(labels, true) };
+    assigned(&fine.roots, &labels, &Roots::at(&all, &times[1], signed).normalised())
 }
 
-/// So many times at which the body moves least as one, of [`CHOICE`] times as many. Where joints are locked, parts are one for a
-/// while, and such times say nothing of them.
-fn telling_times(series: &[&[f32]], samples: usize, signed: bool, count: usize) -> Vec<usize> {
-    let times: Vec<usize> = spread(samples, CHOICE * count).collect();
-    let some: Vec<&[f32]> = spread(series.len(), MAX_SENSORS).map(|sensor| series[sensor]).collect();
-    let roots = Roots::at(&some, &times, signed).normalised();
-    let fit = roots.fit(&roots.start(), MAX_COMPONENTS.min(some.len()), FEW_ROUNDS);
-    let mut order: Vec<(f64, usize)> = roots.left_at_times(&fit).into_iter().zip(times).collect();
-    order.sort_by(|a, b| b.0.total_cmp(&a.0));
-    let mut chosen: Vec<usize> = order.into_iter().take(count).map(|(_, t)| t).collect();
-    chosen.sort_unstable();
-    chosen
+/// What some sensors of a body feel.
+struct Body<'a> {
+    series: Vec<&'a [f32]>,
+    signed: bool,
+    distances: &'a Distances,
+}
+
+impl Body<'_> {
+    fn roots(&self, sensors: &[usize], times: &[usize]) -> Roots {
+        let series: Vec<&[f32]> = sensors.iter().map(|&sensor| self.series[sensor]).collect();
+        Roots::at(&series, times, self.signed).normalised()
+    }
+
+    /// [`TIMES`] at which the sensors move least as one, of [`CHOICE`] times as many. Where joints are locked, parts are one for
+    /// a while, and such times say nothing of them.
+    fn telling_times(&self, sensors: &[usize]) -> [Vec<usize>; 2] {
+        let some: Vec<usize> = spread(sensors.len(), MAX_SENSORS).map(|at| sensors[at]).collect();
+        TIMES.map(|count| {
+            let times: Vec<usize> = spread(self.series[0].len(), CHOICE * count).collect();
+            let roots = self.roots(&some, &times);
+            let fit = roots.fit(&roots.start(), MAX_COMPONENTS.min(some.len()), FEW_ROUNDS);
+            let mut order: Vec<(f64, usize)> = roots.left_at_times(&fit).into_iter().zip(times).collect();
+            order.sort_by(|a, b| b.0.total_cmp(&a.0));
+            let mut chosen: Vec<usize> = order.into_iter().take(count).map(|(_, t)| t).collect();
+            chosen.sort_unstable();
+            chosen
+        })
+    }
+
+    /// The parts of some sensors, from pieces.
+    fn parts_of(&self, sensors: &[usize], times: &[Vec<usize>; 2]) -> Vec<usize> {
+        let n = sensors.len();
+        let values = sensors.iter().flat_map(|&i| sensors.iter().map(move |&j| self.distances.get(i, j)));
+        let distances = &Distances { sensors: n, values: values.collect() };
+        let pieces = (n / PIECE).clamp(1, MAX_PIECES);
+        let labels = linkage::clusters(n, |i, j| distances.get(i, j), Method::Average, pieces);
+        let search = Search { roots: self.roots(sensors, &times[0]), distances };
+        let labels = search.exchanged(search.merged(labels, NEAR[0], 0.0), false);
+        let labels = search.settled(labels, usize::MAX);
+        Search { roots: self.roots(sensors, &times[1]), distances }.settled(labels, NEAR[1])
+    }
+
+    /// Takes parts apart, and what comes of them, where one motion does not explain what is felt at the times that tell most of
+    /// this part.
+    fn taken_apart(&self, mut labels: Vec<usize>) -> Vec<usize> {
+        let mut left = members(&labels);
+        let mut next = left.len();
+        while let Some(part) = left.pop() {
+            let Some(parts) = self.apart(&part) else { continue };
+            let parts: Vec<Vec<usize>> =
+                members(&parts).into_iter().map(|own| own.into_iter().map(|at| part[at]).collect()).collect();
+            for own in parts {
+                own.iter().for_each(|&sensor| labels[sensor] = next);
+                next += 1;
+                left.push(own);
+            }
+        }
+        named_by_appearance(&labels)
+    }
+
+    /// The parts of what was taken for one, if it is several.
+    fn apart(&self, part: &[usize]) -> Option<Vec<usize>> {
+        if part.len() < 2 * PIECE {
+            return None;
+        }
+        let times = self.telling_times(part);
+        let roots = self.roots(part, &times[1]);
+        let every: Vec<usize> = (0..part.len()).collect();
+        let (whole, fit) = best_fit(&roots, &every, 1, MAX_COMPONENTS);
+        if fit.residual <= UNEXPLAINED * fit.spare {
+            return None;
+        }
+        let labels = self.parts_of(part, &times);
+        let parts = members(&labels);
+        let sum: f64 = parts.iter().map(|own| best_fit(&roots, own, 1, MAX_COMPONENTS).0).sum();
+        (parts.len() > 1 && whole - sum > MARGIN).then_some(labels)
+    }
 }
 
 /// Sensors whose sets are looked for.

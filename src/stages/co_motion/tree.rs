@@ -53,20 +53,21 @@ impl CoMotion {
 
 /// The tree over the parts of a body, from the pressures on its sensors.
 ///
-/// In: M × T pressures, of any sign, and the part of each sensor, any numbers. `components` is k of every part; without
+/// In: M × T pressures, of any sign, and the part of each sensor that has one, any numbers. `components` is k of every part; without
 /// it, the data choose it. Out: the tree, and for each pair of parts the share of trees over blocks of times drawn with
 /// replacement that join it.
 pub fn co_motion(
     tactile: &Tactile,
-    labels: &[usize],
+    labels: &[Option<usize>],
     components: Option<usize>,
     rng: &mut impl Rng,
 ) -> CoMotion {
     assert_eq!(labels.len(), tactile.sensors(), "a part for each sensor");
     let signed = is_signed(tactile);
-    let parts: Vec<usize> = sizes(labels).into_keys().collect();
+    let known: Vec<usize> = labels.iter().copied().flatten().collect();
+    let parts: Vec<usize> = sizes(&known).into_keys().collect();
     let series = |part: usize| -> Vec<&[f32]> {
-        let own = tactile.series().zip(labels).filter(|(_, label)| **label == part);
+        let own = tactile.series().zip(labels).filter(|(_, label)| **label == Some(part));
         own.map(|(series, _)| series).collect()
     };
     let motions: Vec<Motion> = parts.iter().map(|&part| motion(&series(part), components, signed)).collect();
@@ -139,6 +140,10 @@ mod tests {
         (agent, tactile)
     }
 
+    fn known(agent: &Agent) -> Vec<Option<usize>> {
+        agent.labels().into_iter().map(Some).collect()
+    }
+
     fn undirected(mut edges: Vec<(usize, usize)>) -> Vec<(usize, usize)> {
         edges.iter_mut().for_each(|edge| *edge = (edge.0.min(edge.1), edge.0.max(edge.1)));
         edges.sort_unstable();
@@ -155,7 +160,7 @@ mod tests {
             [(Morphology::Chain, 0.0), (Morphology::Chain, 0.9), (Morphology::Tee, 0.5)]
         {
             let (agent, tactile) = felt(morphology, coordination);
-            let found = co_motion(&tactile, &agent.labels(), None, &mut stream(1, 1, "co-motion", 0));
+            let found = co_motion(&tactile, &known(&agent), None, &mut stream(1, 1, "co-motion", 0));
             assert_eq!(
                 edges(&found),
                 undirected(agent.tree()),
@@ -172,7 +177,7 @@ mod tests {
     fn only_what_happens_at_the_same_time_tells_the_tree() {
         let (agent, mut tactile) = felt(Morphology::Chain, 0.5);
         let agreement = |tactile: &Tactile| {
-            let found = co_motion(tactile, &agent.labels(), None, &mut stream(1, 1, "co-motion", 0));
+            let found = co_motion(tactile, &known(&agent), None, &mut stream(1, 1, "co-motion", 0));
             found.pairs.iter().find(|pair| (pair.part, pair.other) == (0, 1)).unwrap().agreement
         };
         let before = agreement(&tactile);
@@ -187,7 +192,7 @@ mod tests {
         let (agent, tactile) = felt(Morphology::Chain, 0.5);
         let on = |threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            pool.install(|| co_motion(&tactile, &agent.labels(), None, &mut stream(1, 1, "co-motion", 0)))
+            pool.install(|| co_motion(&tactile, &known(&agent), None, &mut stream(1, 1, "co-motion", 0)))
         };
         assert_eq!(on(1), on(3));
     }

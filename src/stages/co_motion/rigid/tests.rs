@@ -47,7 +47,9 @@ fn sensors_without_distances_go_to_the_part_that_explains_them() {
 fn a_set_of_two_parts_costs_more_than_both() {
     let (tactile, truth) = tactile();
     let series: Vec<&[f32]> = tactile.series().collect();
-    let roots = Roots::at(&series, &telling_times(&series, tactile.samples, false, 500), false).normalised();
+    let body = Body { series, signed: false, distances: &Distances { sensors: 0, values: Vec::new() } };
+    let every: Vec<usize> = (0..truth.len()).collect();
+    let roots = body.roots(&every, &body.telling_times(&every)[0]);
     let own = |parts: &[usize]| {
         (0..truth.len()).filter(|sensor| parts.contains(&truth[*sensor])).collect::<Vec<_>>()
     };
