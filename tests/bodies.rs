@@ -1,4 +1,4 @@
-//! Every body of the folder `bodies` is one, and can be simulated.
+//! Every body of the folder `bodies` is one, and can be simulated; the study of them.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -62,4 +62,46 @@ fn a_body_is_simulated_and_its_parts_are_named() {
     let told = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(2));
     assert!(told.contains("part `trunk`: it lacks centre") && told.lines().count() == 1, "{told}");
+}
+
+#[test]
+fn the_study_of_bodies_repeats_itself_and_names_mistakes() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    let chain = Path::new(env!("CARGO_MANIFEST_DIR")).join("bodies/chain-3.toml");
+    let design = |coordinations: &str| {
+        format!(
+            "seed = 4\nmovements = 1\nchains = 2\ncoordinations = {coordinations}\nbodies = [{chain:?}]\n\
+             [[recording]]\nsamples = 1000\nnoise = 0.0\n[[recording]]\nsamples = 500\nnoise = 0.1\n"
+        )
+    };
+    let study = |name: &str, out: &str| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_bodyschema"));
+        command.current_dir(&folder).args(["bodies", "--design", name, "--out", out]).output().unwrap()
+    };
+    fs::write(at("bodies.toml"), design("[0.0, 0.5]")).unwrap();
+    let output = study("bodies.toml", "whole");
+    assert!(output.status.success(), "{output:?}");
+    let page = fs::read_to_string(at("whole/bodies.md")).unwrap();
+    assert!(page.contains("| chain-3 | 3 | ") && page.contains("| 0.5 | 500 | 0.1 | 1 |"), "{page}");
+    assert_eq!(fs::read_to_string(at("whole/recordings.csv")).unwrap().lines().count(), 5);
+    assert!(study("bodies.toml", "again").status.success());
+    for file in ["recordings.csv", "edges.csv", "bodies.md", "manifest.json"] {
+        assert_eq!(
+            fs::read(at("whole").join(file)).unwrap(),
+            fs::read(at("again").join(file)).unwrap(),
+            "{file}"
+        );
+    }
+    for (wrong, expected) in [
+        (design("[]"), "must not be empty"),
+        (design("[0.5]").replace("noise = 0.1", "noise = -1"), "noise from 0 to 10"),
+        (design("[0.5]").replace("chain-3", "chain-33"), "chain-33.toml: cannot be read"),
+        (design("[1.5]"), "motion.coordination"),
+    ] {
+        fs::write(at("wrong.toml"), wrong).unwrap();
+        let output = study("wrong.toml", "wrong");
+        let told = String::from_utf8(output.stderr).unwrap();
+        assert!(output.status.code() == Some(2) && told.contains(expected), "{expected}: {told}");
+    }
 }

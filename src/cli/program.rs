@@ -7,7 +7,7 @@ use clap::{Parser, Subcommand};
 
 use super::body::Body;
 use super::estimate::Estimate;
-use super::experiments::{Compare, Multiverse, Reproduce, Search, Sensitivity};
+use super::experiments::{Bodies, Compare, Multiverse, Reproduce, Search, Sensitivity};
 use super::results::{Plot, Verify};
 use super::stages::{Distance, Infer, Map, Simulate};
 use super::tree::Tree;
@@ -35,6 +35,7 @@ enum Command {
     Sensitivity(Sensitivity),
     Compare(Compare),
     Multiverse(Multiverse),
+    Bodies(Bodies),
     Plot(Plot),
     Verify(Verify),
 }
@@ -54,6 +55,7 @@ impl Command {
             Self::Sensitivity(command) => command.run(),
             Self::Compare(command) => command.run(),
             Self::Multiverse(command) => command.run(),
+            Self::Bodies(command) => command.run(),
             Self::Plot(command) => command.run(),
             Self::Verify(command) => command.run(),
         }

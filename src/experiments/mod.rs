@@ -2,6 +2,7 @@
 
 mod ahead;
 mod batch;
+pub mod bodies;
 mod body_files;
 pub mod compare;
 mod compared;

@@ -60,14 +60,13 @@ pub fn parts(labels: &[usize]) -> usize {
     sizes(labels).values().filter(|size| **size > 1).count()
 }
 
-/// Whether the estimated tree is the true one: every active cluster is matched to the part that most of
-/// its sensors are on, every part is matched once, and matched edges are the true edges.
-fn tree_correct(labels: &[usize], tree: &[Edge], truth: &Truth) -> bool {
+/// The part that most sensors of each active cluster are on.
+fn majority(labels: &[usize], truth: &Truth) -> BTreeMap<usize, usize> {
     let mut overlap: BTreeMap<usize, BTreeMap<usize, usize>> = BTreeMap::new();
     for (label, part) in labels.iter().zip(&truth.labels) {
         *overlap.entry(*label).or_default().entry(*part).or_default() += 1;
     }
-    let matching: BTreeMap<usize, usize> = overlap
+    overlap
         .into_iter()
         .filter(|(_, parts)| parts.values().sum::<usize>() > 1)
         .filter_map(|(label, parts)| {
@@ -75,13 +74,35 @@ fn tree_correct(labels: &[usize], tree: &[Edge], truth: &Truth) -> bool {
                 parts.into_iter().reduce(|most, next| if next.1 > most.1 { next } else { most })?;
             Some((label, part))
         })
-        .collect();
+        .collect()
+}
+
+/// The part that each active cluster is matched to, that which most of its sensors are on; `None` unless every part is matched
+/// once.
+fn matching(labels: &[usize], truth: &Truth) -> Option<BTreeMap<usize, usize>> {
+    let matching = majority(labels, truth);
     let mut matched: Vec<usize> = matching.values().copied().collect();
     matched.sort_unstable();
     matched.dedup();
-    if matched.len() != matching.len() || matched.len() != truth.parts() {
-        return false;
-    }
+    (matched.len() == matching.len() && matched.len() == truth.parts()).then_some(matching)
+}
+
+/// Whether every cluster is one part by most of its sensors, and every part one cluster.
+pub fn parts_match(labels: &[usize], truth: &Truth) -> bool {
+    matching(labels, truth).is_some()
+}
+
+/// Whether an edge joins clusters whose parts are joined, each cluster being the part of most of its sensors.
+pub fn joins(labels: &[usize], edge: &Edge, truth: &Truth) -> bool {
+    let parts = majority(labels, truth);
+    let Some((a, b)) = parts.get(&edge.child).zip(parts.get(&edge.parent)) else { return false };
+    truth.tree.iter().any(|&(child, parent)| [(child, parent), (parent, child)].contains(&(*a, *b)))
+}
+
+/// Whether the estimated tree is the true one: every active cluster is matched to the part that most of
+/// its sensors are on, every part is matched once, and matched edges are the true edges.
+fn tree_correct(labels: &[usize], tree: &[Edge], truth: &Truth) -> bool {
+    let Some(matching) = matching(labels, truth) else { return false };
     let undirected = |a: usize, b: usize| (a.min(b), a.max(b));
     // A node of a single sensor, which the authors' code has, matches no part.
     let parts = |edge: &Edge| Some(undirected(*matching.get(&edge.child)?, *matching.get(&edge.parent)?));
@@ -132,5 +153,15 @@ mod tests {
         let doubled = [[0, 0, 1, 1], [2; 4], [2; 4]].concat();
         let score_doubled = score(&draw(&doubled, &[(1, 0), (2, 1)]), &chain_of_three(), 0.0);
         assert!(score_doubled.eligible && !score_doubled.tree_correct);
+    }
+
+    #[test]
+    fn parts_match_one_to_one_and_an_edge_joins_what_is_joined() {
+        let truth = chain_of_three();
+        let few_wrong = [[7, 7, 7, 2], [2; 4], [5; 4]].concat();
+        assert!(parts_match(&few_wrong, &truth));
+        assert!(!parts_match(&[[0; 4], [0; 4], [2; 4]].concat(), &truth));
+        let joined = |child, parent| joins(&few_wrong, &Edge { child, parent }, &truth);
+        assert!(joined(7, 2) && joined(5, 2) && !joined(7, 5) && !joined(7, 9));
     }
 }

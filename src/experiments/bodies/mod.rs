@@ -1,0 +1,10 @@
+//! Study how often parts and tree of any body are found from touch alone, beside other methods on the same pressures.
+
+mod design;
+mod movement;
+mod page;
+mod peers;
+mod run;
+
+pub use self::design::Design;
+pub use self::run::study;

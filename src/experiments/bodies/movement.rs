@@ -1,0 +1,226 @@
+//! Estimate parts and tree from all recordings of one movement, and compare with the truth.
+
+use rand_distr::{Distribution, StandardNormal};
+use serde::{Deserialize, Serialize};
+
+use super::design::{Design, Recording, StudyBody};
+use super::peers;
+use crate::analysis::estimate::estimate;
+use crate::numerics::rng::stream;
+use crate::settings::Settings;
+use crate::stages::co_motion::co_motion;
+use crate::stages::distance::information_metric;
+use crate::stages::evaluate::{joins, parts, parts_match, score};
+use crate::stages::quantise::quantise;
+use crate::stages::schema::Draw;
+use crate::stages::sense::{Tactile, sense};
+use crate::stages::simulate::simulate;
+use crate::stages::tree::{Edge, Truth};
+use crate::stages::usable::{Usable, usable};
+
+/// A movement of the study.
+pub struct Movement<'a> {
+    /// What is studied.
+    pub design: &'a Design,
+    /// The body.
+    pub body: &'a StudyBody,
+    /// The settings.
+    pub settings: &'a Settings,
+    /// Its number, from 1.
+    pub number: usize,
+}
+
+/// What was found in a recording: a row of recordings.csv.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Row {
+    /// The body.
+    pub body: String,
+    /// p.
+    pub coordination: f64,
+    /// The movement, from 1.
+    pub movement: usize,
+    /// T.
+    pub samples: usize,
+    /// Noise over the root mean square of each sensor.
+    pub noise: f64,
+    /// Whether the physics step resolves the movement.
+    pub resolved: bool,
+    /// Number of true parts.
+    pub true_parts: usize,
+    /// Number of estimated parts.
+    pub parts: usize,
+    /// Adjusted Rand index.
+    pub ari: f64,
+    /// Whether each estimated part is one true part by most of its sensors, and each true part one estimated.
+    pub parts_right: bool,
+    /// Whether the tree over the estimated parts is right.
+    pub tree_right: bool,
+    /// The same over the true parts.
+    pub tree_of_true_parts_right: bool,
+    /// The same of the nearest sensors of the estimated parts.
+    pub nearest_right: bool,
+    /// The same of the tree of most information between the estimated parts.
+    pub chow_liu_right: bool,
+    /// Number of parts of the DPGMM-LJ's best draw.
+    pub dpgmm_lj_parts: Option<usize>,
+    /// Whether its tree is right.
+    pub dpgmm_lj_right: bool,
+    /// Whether the tree of the DPGMM's best draw is right, by Prim's algorithm.
+    pub dpgmm_prim_right: bool,
+}
+
+/// An edge of an estimated tree: a row of edges.csv.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct EdgeRow {
+    /// The body.
+    pub body: String,
+    /// p.
+    pub coordination: f64,
+    /// The movement, from 1.
+    pub movement: usize,
+    /// T.
+    pub samples: usize,
+    /// Noise.
+    pub noise: f64,
+    /// The share of resampled trees with the edge.
+    pub confidence: f64,
+    /// Whether it joins parts that are joined, each estimated part being that of most of its sensors.
+    pub right: bool,
+}
+
+/// All that was found in the recordings of a movement.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Found {
+    /// A row for each recording.
+    pub rows: Vec<Row>,
+    /// A row for each edge of each recording.
+    pub edges: Vec<EdgeRow>,
+}
+
+impl Movement<'_> {
+    /// The name of its checkpoint.
+    pub fn name(&self) -> String {
+        format!("{}-p{}-{}", self.body.name, self.settings.motion.coordination, self.number)
+    }
+
+    /// A number that no other movement has, for its streams of random numbers.
+    fn simulation(&self, of_body: usize) -> usize {
+        of_body * self.design.movements + self.number
+    }
+
+    /// Simulates it, and estimates from each recording.
+    ///
+    /// # Errors
+    /// If it is unstable; the message says at which body.
+    pub fn run(&self, of_body: usize, tick: &dyn Fn()) -> Result<Found, String> {
+        let Settings { motion, physics, sense: tactile, experiment, .. } = self.settings;
+        let (agent, simulation) = (&self.body.body.agent, self.simulation(of_body));
+        let mut rng = stream(experiment.seed, simulation, "motion", 0);
+        let moved = simulate(agent, motion, physics, tactile.interval, &mut rng, &|| ())
+            .map_err(|error| format!("{}: {error}", self.name()))?;
+        tick();
+        let felt = sense(agent, &moved, tactile);
+        let truth = agent.truth();
+        let (resolved, mut found) =
+            (moved.resolution.is_resolved(), Found { rows: Vec::new(), edges: Vec::new() });
+        drop(moved);
+        for (at, recording) in self.design.recordings.iter().enumerate() {
+            let mut rng = stream(experiment.seed, simulation, "noise", at);
+            self.record(
+                &recorded(&felt, recording, &mut rng),
+                &truth,
+                recording,
+                resolved,
+                simulation,
+                &mut found,
+            );
+            tick();
+        }
+        Ok(found)
+    }
+
+    fn record(
+        &self,
+        tactile: &Tactile,
+        truth: &Truth,
+        recording: &Recording,
+        resolved: bool,
+        simulation: usize,
+        found: &mut Found,
+    ) {
+        let Settings { motion, quantise: levels, experiment, .. } = self.settings;
+        // All sensors are read: one that feels nothing in a short recording is on some part, too.
+        let Usable { tactile, sensors, .. } = usable(tactile.clone());
+        let truth =
+            Truth { labels: sensors.iter().map(|&at| truth.labels[at]).collect(), tree: truth.tree.clone() };
+        let mut rng = stream(experiment.seed, simulation, "co-motion", 0);
+        let estimated = estimate(&tactile, levels, &mut rng, &|| ());
+        let labels = &estimated.parts.labels;
+        let draw = |labels: &[usize], tree: Vec<Edge>| Draw {
+            chain: 0,
+            sweep: 0,
+            labels: labels.to_vec(),
+            tree,
+            joints: Vec::new(),
+            log_posterior: None,
+        };
+        let right = |labels: &[usize], tree: Vec<Edge>| score(&draw(labels, tree), &truth, 0.0).tree_correct;
+        let given: Vec<Option<usize>> = truth.labels.iter().copied().map(Some).collect();
+        let tree_of_true_parts = co_motion(&tactile, &given, None, &mut rng).tree;
+        let symbols = quantise(&tactile, levels);
+        let distances = information_metric(&symbols);
+        let [nearest, chow_liu] = peers::trees(labels, &distances, &symbols);
+        let mixtures = peers::mixtures(&distances, self.settings, simulation);
+        let mixture_right =
+            |at: usize| mixtures.as_ref().is_some_and(|draws| score(&draws[at], &truth, 0.0).tree_correct);
+        let (body, coordination) = (self.body.name.clone(), motion.coordination);
+        let &Recording { samples, noise } = recording;
+        found.edges.extend(estimated.tree.tree.iter().map(|edge| EdgeRow {
+            body: body.clone(),
+            coordination,
+            movement: self.number,
+            samples,
+            noise,
+            confidence: estimated.tree.confidence(edge),
+            right: joins(labels, edge, &truth),
+        }));
+        found.rows.push(Row {
+            body,
+            coordination,
+            movement: self.number,
+            samples,
+            noise,
+            resolved,
+            true_parts: truth.parts(),
+            parts: estimated.tree.parts.len(),
+            ari: score(&draw(labels, Vec::new()), &truth, 0.0).ari,
+            parts_right: parts_match(labels, &truth),
+            tree_right: right(labels, estimated.tree.tree.clone()),
+            tree_of_true_parts_right: right(&truth.labels, tree_of_true_parts),
+            nearest_right: right(labels, nearest),
+            chow_liu_right: right(labels, chow_liu),
+            dpgmm_lj_parts: mixtures.as_ref().map(|draws| parts(&draws[0].labels)),
+            dpgmm_lj_right: mixture_right(0),
+            dpgmm_prim_right: mixture_right(1),
+        });
+    }
+}
+
+/// The first samples, with noise; a pressure that it makes negative is 0.
+fn recorded(felt: &Tactile, recording: &Recording, rng: &mut impl rand::Rng) -> Tactile {
+    let mut pressures = Vec::with_capacity(felt.sensors() * recording.samples);
+    for series in felt.series() {
+        let own = &series[..recording.samples];
+        if recording.noise == 0.0 {
+            pressures.extend_from_slice(own);
+            continue;
+        }
+        let squares: f64 = own.iter().map(|pressure| f64::from(*pressure).powi(2)).sum();
+        let deviation = recording.noise * (squares / own.len() as f64).sqrt();
+        pressures.extend(own.iter().map(|pressure| {
+            let error: f64 = StandardNormal.sample(rng);
+            (f64::from(*pressure) + deviation * error).max(0.0) as f32
+        }));
+    }
+    Tactile { samples: recording.samples, pressures }
+}

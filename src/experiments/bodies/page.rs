@@ -1,0 +1,147 @@
+//! Describe the study of bodies for people.
+
+use super::design::{Design, Recording};
+use super::movement::{EdgeRow, Row};
+use crate::analysis::published::Unit;
+use crate::analysis::statistics::{mean, rate};
+use crate::report::markdown::{row, rule};
+use crate::report::numbers;
+
+/// Lower ends of the bins of confidence.
+const BINS: [f64; 6] = [0.0, 0.5, 0.8, 0.95, 0.99, 1.0];
+
+/// Whether a row is right in some respect.
+type Right = fn(&Row) -> bool;
+
+/// What is compared, by columns.
+const METHODS: [(&str, Right); 7] = [
+    ("parts", |row| row.parts_right),
+    ("tree", |row| row.tree_right),
+    ("tree of true parts", |row| row.tree_of_true_parts_right),
+    ("nearest sensors", |row| row.nearest_right),
+    ("Chow–Liu", |row| row.chow_liu_right),
+    ("DPGMM-LJ", |row| row.dpgmm_lj_right),
+    ("DPGMM + Prim", |row| row.dpgmm_prim_right),
+];
+
+/// The page.
+pub fn page(design: &Design, rows: &[&Row], edges: &[&EdgeRow]) -> String {
+    let mut lines = vec![
+        "# Parts and tree of any body\n".to_owned(),
+        about(design, rows),
+        "\n## How often is it right?\n".to_owned(),
+        "Parts are right if each estimated part is one true part by most of its sensors, and the other way round; a tree is \
+         right if its parts are and all its edges are. Trees of nearest sensors and of Chow and Liu are over the same \
+         estimated parts. DPGMM-LJ and DPGMM + Prim: the draw of highest log posterior of all chains, on a body map of 14 \
+         dimensions. In brackets: 95 % intervals (Wilson).\n"
+            .to_owned(),
+    ];
+    let header = ["p", "T", "noise", "n"].into_iter().chain(METHODS.map(|(name, _)| name));
+    lines.push(row(header));
+    lines.push(rule(4 + METHODS.len()));
+    for &p in &design.coordinations {
+        for recording in &design.recordings {
+            let own: Vec<&Row> = rows.iter().copied().filter(|row| is_of(row, p, recording)).collect();
+            let cells = [
+                p.to_string(),
+                recording.samples.to_string(),
+                recording.noise.to_string(),
+                own.len().to_string(),
+            ];
+            lines.push(row(cells.into_iter().chain(METHODS.map(|(_, right)| share(&own, right)))));
+        }
+    }
+    lines.push("\n## Body by body\n".to_owned());
+    let Some(longest) = longest(design) else { return lines.join("\n") };
+    lines.push(format!(
+        "Of {} samples with noise {}: in how many of {} movements the tree over the estimated parts is right, and the mean \
+         adjusted Rand index.\n",
+        longest.samples, longest.noise, design.movements
+    ));
+    let header = ["body".to_owned(), "parts".to_owned()];
+    lines.push(row(header.into_iter().chain(design.coordinations.iter().map(|p| format!("p = {p}")))));
+    lines.push(rule(2 + design.coordinations.len()));
+    for body in rows.chunk_by(|a, b| a.body == b.body) {
+        let at = |p: &f64| {
+            let own: Vec<&Row> = body.iter().copied().filter(|row| is_of(row, *p, &longest)).collect();
+            let right = own.iter().filter(|row| row.tree_right).count();
+            let ari: Vec<f64> = own.iter().map(|row| row.ari).collect();
+            format!("{right} of {} ({:.2})", own.len(), mean(&ari).value.unwrap_or(0.0))
+        };
+        let first = [body[0].body.clone(), body[0].true_parts.to_string()];
+        lines.push(row(first.into_iter().chain(design.coordinations.iter().map(at))));
+    }
+    lines.push("\n## Are the confidences right?\n".to_owned());
+    lines.push("All edges of all estimated trees, by their confidence.\n".to_owned());
+    lines.push(row(["confidence", "edges", "mean confidence", "right"]));
+    lines.push(rule(4));
+    lines.extend(calibration(edges));
+    lines.push(String::new());
+    lines.join("\n")
+}
+
+fn about(design: &Design, rows: &[&Row]) -> String {
+    let unresolved = rows.iter().filter(|row| !row.resolved).count();
+    let resolved = match unresolved {
+        0 => "The physics step resolves all movements.".to_owned(),
+        count => format!(
+            "The physics step does not resolve the movements of {count} of {} recordings.",
+            rows.len()
+        ),
+    };
+    format!(
+        "{} bodies, {} movements of each at each p, seed {}; {} chains of each mixture. {resolved} `reproduce/bodies.sh` makes \
+         this page; each recording is a row of [recordings.csv](recordings.csv), each edge of [edges.csv](edges.csv). How it \
+         works: `docs/co-motion.md`.",
+        design.bodies.len(),
+        design.movements,
+        design.seed,
+        design.chains
+    )
+}
+
+fn is_of(row: &Row, p: f64, recording: &Recording) -> bool {
+    row.coordination == p && row.samples == recording.samples && row.noise == recording.noise
+}
+
+/// The longest recording of least noise.
+fn longest(design: &Design) -> Option<Recording> {
+    let order = |one: &&Recording, other: &&Recording| {
+        one.samples.cmp(&other.samples).then(other.noise.total_cmp(&one.noise))
+    };
+    design.recordings.iter().max_by(order).copied()
+}
+
+/// The share of rows that are right, with its interval.
+fn share(rows: &[&Row], right: Right) -> String {
+    written(rows.iter().filter(|row| right(row)).count(), rows.len())
+}
+
+fn written(right: usize, n: usize) -> String {
+    let rate = rate(right, n);
+    let value = numbers::value(rate.value, Some(Unit::Rate));
+    match rate.interval {
+        None => value,
+        interval => format!("{value} ({})", numbers::range(interval, Some(Unit::Rate))),
+    }
+}
+
+fn calibration(edges: &[&EdgeRow]) -> Vec<String> {
+    let bin = |(at, &low): (usize, &f64)| {
+        let high = BINS.get(at + 1).copied();
+        let within =
+            |edge: &&&EdgeRow| edge.confidence >= low && high.is_none_or(|high| edge.confidence < high);
+        let own: Vec<&&EdgeRow> = edges.iter().filter(within).collect();
+        let confidences: Vec<f64> = own.iter().map(|edge| edge.confidence).collect();
+        let name = high.map_or("100 %".to_owned(), |high| {
+            format!("{} to {} %", numbers::percent(low), numbers::percent(high))
+        });
+        row([
+            name,
+            own.len().to_string(),
+            numbers::value(mean(&confidences).value, Some(Unit::Rate)),
+            written(own.iter().filter(|edge| edge.right).count(), own.len()),
+        ])
+    };
+    BINS.iter().enumerate().map(bin).collect()
+}

@@ -1,0 +1,74 @@
+//! Run the study of bodies, and write its tables and its page.
+
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use rayon::prelude::*;
+
+use super::super::error::ExperimentError;
+use super::super::progress::progress;
+use super::design::Design;
+use super::movement::{EdgeRow, Found, Movement, Row};
+use super::page::page;
+use crate::files::checkpoint::Checkpoints;
+use crate::files::manifest::Manifest;
+use crate::files::result_folder::ResultFolder;
+
+/// Runs the study, and writes into `out`: recordings.csv, edges.csv, bodies.md, design.toml and manifest.json.
+///
+/// A study that was interrupted goes on from the movements that it finished.
+///
+/// # Errors
+/// If a body or the settings cannot be used, a movement is unstable, or a file cannot be written.
+pub fn study(design: &Design, text: &str, path: &Path, out: &Path) -> Result<(), ExperimentError> {
+    let bodies = design.read_bodies(path)?;
+    let settings = design
+        .coordinations
+        .iter()
+        .map(|&p| design.settings_at(p))
+        .collect::<Result<Vec<_>, ExperimentError>>()?;
+    for (body, settings) in
+        bodies.iter().flat_map(|body| settings.iter().map(move |settings| (body, settings)))
+    {
+        settings.check_times(body.body.agent.sites.len()).map_err(crate::settings::SettingsError::from)?;
+    }
+    let checkpoints = Checkpoints::new(out, design);
+    let all: Vec<(usize, Movement)> = bodies
+        .iter()
+        .enumerate()
+        .flat_map(|(at, body)| settings.iter().map(move |settings| (at, body, settings)))
+        .flat_map(|(at, body, settings)| {
+            (1..=design.movements).map(move |number| (at, Movement { design, body, settings, number }))
+        })
+        .collect();
+    let each = design.recordings.len() as u64 + 1;
+    let bar = progress(each * all.len() as u64, format!("{} movements", all.len()));
+    let failed = AtomicBool::new(false);
+    let run = |(of_body, movement): &(usize, Movement)| -> Result<Found, ExperimentError> {
+        if let Some(found) = checkpoints.recall(&movement.name()) {
+            bar.inc(each);
+            return Ok(found);
+        }
+        if failed.load(Ordering::Relaxed) {
+            return Err(ExperimentError::Stage("another movement failed".to_owned()));
+        }
+        let found = movement.run(*of_body, &|| bar.inc(1)).map_err(|message| {
+            failed.store(true, Ordering::Relaxed);
+            ExperimentError::Stage(message)
+        })?;
+        checkpoints.keep(&movement.name(), &found)?;
+        Ok(found)
+    };
+    let found: Vec<Found> = all.par_iter().map(run).collect::<Result<_, _>>()?;
+    bar.finish_and_clear();
+    let rows: Vec<&Row> = found.iter().flat_map(|found| &found.rows).collect();
+    let edges: Vec<&EdgeRow> = found.iter().flat_map(|found| &found.edges).collect();
+    let mut folder = ResultFolder::new(out);
+    folder.write_rows("recordings.csv", &rows)?;
+    folder.write_rows("edges.csv", &edges)?;
+    folder.write_text("design.toml", text)?;
+    folder.write_text("bodies.md", &page(design, &rows, &edges))?;
+    folder.write_manifest(Manifest::of_study("bodies", design.seed))?;
+    checkpoints.clear()?;
+    Ok(())
+}
