@@ -17,7 +17,8 @@ use crate::files::tables::write_rows;
 use crate::files::touch::read_touch;
 use crate::files::{prepare_folder, write_text};
 use crate::numerics::rng::stream;
-use crate::stages::co_motion::is_signed;
+use crate::stages::co_motion::{MIN_SENSORS, is_signed};
+use crate::stages::schema::Draw;
 use crate::stages::sense::Tactile;
 use crate::stages::tree::Truth;
 use crate::stages::usable::{Fault, Usable, usable};
@@ -57,9 +58,6 @@ struct PartRow {
     next_part: Option<usize>,
     next_unexplained: Option<f64>,
 }
-
-/// Fewest sensors of which parts can be found: two pieces.
-const MIN_SENSORS: usize = 12;
 
 /// summary.json.
 #[derive(Serialize)]
@@ -124,7 +122,7 @@ impl Estimate {
         tree::print(&found.tree, &found.parts.labels)?;
         if let Some(truth) = truth {
             let own = sensors.iter().map(|&sensor| truth.labels[sensor]).collect();
-            let draw = tree::draw_of(found.parts.labels, found.tree.tree);
+            let draw = Draw::of(found.parts.labels, found.tree.tree);
             tree::print_score(&draw, &Truth { labels: own, tree: truth.tree }, 1.0)?;
         }
         Ok(ExitCode::SUCCESS)

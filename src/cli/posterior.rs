@@ -47,7 +47,10 @@ pub fn write(out: &Path, posterior: &Posterior) -> Result<()> {
     let counts = posterior.parts.iter().map(|&(parts, probability)| CountRow { parts, probability });
     write_rows(&out.join("posterior.csv"), counts)?;
     let consensus = &posterior.consensus;
-    write_parts(out, 0..consensus.labels.len(), &consensus.labels, &consensus.certainty)?;
+    let sensors = consensus.labels.iter().zip(&consensus.certainty).enumerate();
+    let sensor =
+        |(sensor, (&part, &probability)): (usize, (&usize, &f64))| SensorRow { sensor, part, probability };
+    write_rows(&out.join("parts.csv"), sensors.map(sensor))?;
     if let Some(tree) = &posterior.tree {
         let edge = |&(part, other, probability): &(usize, usize, f64)| EdgeRow {
             part,
@@ -64,18 +67,6 @@ pub fn write(out: &Path, posterior: &Posterior) -> Result<()> {
         ess: mixing.ess,
     };
     Ok(write_rows(&out.join("diagnostics.csv"), mixing.map(row))?)
-}
-
-/// Writes parts.csv.
-pub fn write_parts(
-    out: &Path,
-    sensors: impl IntoIterator<Item = usize>,
-    labels: &[usize],
-    certainty: &[f64],
-) -> Result<()> {
-    let rows = sensors.into_iter().zip(labels.iter().zip(certainty));
-    let row = |(sensor, (&part, &probability))| SensorRow { sensor, part, probability };
-    Ok(write_rows(&out.join("parts.csv"), rows.map(row))?)
 }
 
 /// Prints the number of parts, the tree, and whether the chains have mixed; and how the consensus compares with the truth, if

@@ -78,7 +78,7 @@ impl Simulate {
             "{} samples of {} sensors on {} parts, seed {}, in {}",
             tactile.samples,
             tactile.sensors(),
-            agent.rigid_bodies().into_iter().max().map_or(0, |last| last + 1),
+            agent.tree().len() + 1,
             experiment.seed,
             out.display()
         ))?;

@@ -18,7 +18,7 @@ use crate::report::text_tree::text_tree;
 use crate::stages::co_motion::{CoMotion, MAX_COMPONENTS, Pair, co_motion};
 use crate::stages::evaluate::score;
 use crate::stages::schema::Draw;
-use crate::stages::tree::{Edge, Truth};
+use crate::stages::tree::Truth;
 use crate::stages::usable::{Usable, usable};
 
 /// How given parts are joined, from what they feel of their joints (not in the paper).
@@ -88,7 +88,7 @@ impl Tree {
         if let Some(truth) = truth {
             let kept = sensors.iter().zip(&own).filter(|(_, part)| part.is_some());
             let own = kept.map(|(&sensor, _)| truth.labels[sensor]).collect();
-            let draw = draw_of(labels, found.tree);
+            let draw = Draw::of(labels, found.tree);
             print_score(&draw, &Truth { labels: own, tree: truth.tree }, 1.0)?;
         }
         Ok(ExitCode::SUCCESS)
@@ -103,11 +103,6 @@ pub fn say_lost(input: &Path, lost_samples: usize) {
             input.display()
         );
     }
-}
-
-/// Parts and a tree over them, as a draw.
-pub fn draw_of(labels: Vec<usize>, tree: Vec<Edge>) -> Draw {
-    Draw { chain: 0, sweep: 0, labels, tree, joints: Vec::new(), log_posterior: None }
 }
 
 /// Prints how parts and tree compare with the truth.

@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use super::error::FileError;
 use super::whole::{read_text, write_text};
+use crate::numerics::range::{is_length, is_moderate};
 use crate::stages::agent::{Agent, Freedom, Joint, Part, Shape, Site, Spot, Vector3, across};
 use crate::stages::distance::MAX_SENSORS;
 
@@ -231,8 +232,7 @@ impl BodyFile {
 
 /// A number that the physics engine can compute with, or what is wrong with it.
 fn length(key: &str, value: f64) -> Result<f64, Wrong> {
-    let fits = (1e-3..=1e3).contains(&value);
-    if fits { Ok(value) } else { Err(format!("{key} is {value}, but must be 0.001 to 1000 (m)")) }
+    if is_length(value) { Ok(value) } else { Err(format!("{key} is {value}, but must be 0.001 to 1000 (m)")) }
 }
 
 fn place(key: &str, value: Vector3) -> Result<Vector3, Wrong> {
@@ -313,7 +313,7 @@ impl PartEntry {
         };
         // After the lengths: a density of a mass and wrong lengths is wrong, too.
         let density = self.density.unwrap_or(density);
-        if !(1e-6..=1e6).contains(&density) {
+        if !is_moderate(density) {
             return Err(format!("density is {density}, but must be 0.000001 to 1000000 (kg/m³)"));
         }
         Ok(Part { shape, centre, rotation, density })

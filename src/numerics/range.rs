@@ -30,14 +30,24 @@ pub fn positive(key: &'static str, value: f64) -> Checked {
     check(key, value, value.is_finite() && value > 0.0, "a positive, finite number")
 }
 
+/// Whether a length in m is within 1 mm to 1 km.
+pub fn is_length(value: f64) -> bool {
+    (1e-3..=1e3).contains(&value)
+}
+
+/// Whether a number is positive and within a factor of a million of 1.
+pub fn is_moderate(value: f64) -> bool {
+    (1e-6..=1e6).contains(&value)
+}
+
 /// A length in m: 1 mm to 1 km. The physics engine computes with it without overflow, and a picture can show it.
 pub fn length(key: &'static str, value: f64) -> Checked {
-    check(key, value, (1e-3..=1e3).contains(&value), "0.001 to 1000")
+    check(key, value, is_length(value), "0.001 to 1000")
 }
 
 /// A positive number within a factor of a million of 1.
 pub fn moderate(key: &'static str, value: f64) -> Checked {
-    check(key, value, (1e-6..=1e6).contains(&value), "0.000001 to 1000000")
+    check(key, value, is_moderate(value), "0.000001 to 1000000")
 }
 
 /// A gain of a controller, which may be 0.

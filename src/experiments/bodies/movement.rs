@@ -126,84 +126,75 @@ impl Movement<'_> {
         drop(moved);
         for (at, recording) in self.design.recordings.iter().enumerate() {
             let mut rng = stream(experiment.seed, simulation, "noise", at);
-            self.record(
-                &recorded(&felt, recording, &mut rng),
-                &truth,
-                recording,
-                resolved,
-                simulation,
-                &mut found,
-            );
+            let seen = Seen { truth: &truth, recording, resolved, simulation };
+            let (row, edges) = self.record(recorded(&felt, recording, &mut rng), &seen);
+            found.rows.push(row);
+            found.edges.extend(edges);
             tick();
         }
         Ok(found)
     }
 
-    fn record(
-        &self,
-        tactile: &Tactile,
-        truth: &Truth,
-        recording: &Recording,
-        resolved: bool,
-        simulation: usize,
-        found: &mut Found,
-    ) {
+    /// What is found in a recording.
+    fn record(&self, tactile: Tactile, seen: &Seen) -> (Row, Vec<EdgeRow>) {
         let Settings { motion, quantise: levels, experiment, .. } = self.settings;
-        // All sensors are read: one that feels nothing in a short recording is on some part, too.
-        let Usable { tactile, sensors, .. } = usable(tactile.clone());
-        let truth =
-            Truth { labels: sensors.iter().map(|&at| truth.labels[at]).collect(), tree: truth.tree.clone() };
-        let mut rng = stream(experiment.seed, simulation, "co-motion", 0);
+        let &Recording { samples, noise } = seen.recording;
+        let Usable { tactile, sensors, .. } = usable(tactile);
+        let own = sensors.iter().map(|&at| seen.truth.labels[at]).collect();
+        let truth = Truth { labels: own, tree: seen.truth.tree.clone() };
+        let mut rng = stream(experiment.seed, seen.simulation, "co-motion", 0);
         let estimated = estimate(&tactile, levels, &mut rng, &|| ());
-        let labels = &estimated.parts.labels;
-        let draw = |labels: &[usize], tree: Vec<Edge>| Draw {
-            chain: 0,
-            sweep: 0,
-            labels: labels.to_vec(),
-            tree,
-            joints: Vec::new(),
-            log_posterior: None,
-        };
-        let right = |labels: &[usize], tree: Vec<Edge>| score(&draw(labels, tree), &truth, 0.0).tree_correct;
+        let (labels, tree) = (&estimated.parts.labels, &estimated.tree);
         let given: Vec<Option<usize>> = truth.labels.iter().copied().map(Some).collect();
         let tree_of_true_parts = co_motion(&tactile, &given, None, &mut rng).tree;
         let symbols = quantise(&tactile, levels);
         let distances = information_metric(&symbols);
         let [nearest, chow_liu] = peers::trees(labels, &distances, &symbols);
-        let mixtures = peers::mixtures(&distances, self.settings, simulation);
+        let mixtures = peers::mixtures(&distances, self.settings, seen.simulation);
+        let scored =
+            |labels: &[usize], tree: &[Edge]| score(&Draw::of(labels.to_vec(), tree.to_vec()), &truth, 0.0);
         let mixture_right =
             |at: usize| mixtures.as_ref().is_some_and(|draws| score(&draws[at], &truth, 0.0).tree_correct);
-        let (body, coordination) = (self.body.name.clone(), motion.coordination);
-        let &Recording { samples, noise } = recording;
-        found.edges.extend(estimated.tree.tree.iter().map(|edge| EdgeRow {
-            body: body.clone(),
-            coordination,
+        let found = scored(labels, &tree.tree);
+        let row = Row {
+            body: self.body.name.clone(),
+            coordination: motion.coordination,
             movement: self.number,
             samples,
             noise,
-            confidence: estimated.tree.confidence(edge),
-            right: joins(labels, edge, &truth),
-        }));
-        found.rows.push(Row {
-            body,
-            coordination,
-            movement: self.number,
-            samples,
-            noise,
-            resolved,
+            resolved: seen.resolved,
             true_parts: truth.parts(),
-            parts: estimated.tree.parts.len(),
-            ari: score(&draw(labels, Vec::new()), &truth, 0.0).ari,
+            parts: tree.parts.len(),
+            ari: found.ari,
             parts_right: parts_match(labels, &truth),
-            tree_right: right(labels, estimated.tree.tree.clone()),
-            tree_of_true_parts_right: right(&truth.labels, tree_of_true_parts),
-            nearest_right: right(labels, nearest),
-            chow_liu_right: right(labels, chow_liu),
+            tree_right: found.tree_correct,
+            tree_of_true_parts_right: scored(&truth.labels, &tree_of_true_parts).tree_correct,
+            nearest_right: scored(labels, &nearest).tree_correct,
+            chow_liu_right: scored(labels, &chow_liu).tree_correct,
             dpgmm_lj_parts: mixtures.as_ref().map(|draws| parts(&draws[0].labels)),
             dpgmm_lj_right: mixture_right(0),
             dpgmm_prim_right: mixture_right(1),
-        });
+        };
+        let edge = |edge: &Edge| EdgeRow {
+            body: row.body.clone(),
+            coordination: row.coordination,
+            movement: row.movement,
+            samples,
+            noise,
+            confidence: tree.confidence(edge),
+            right: joins(labels, edge, &truth),
+        };
+        let edges = tree.tree.iter().map(edge).collect();
+        (row, edges)
     }
+}
+
+/// What is known of a recording besides its pressures.
+struct Seen<'a> {
+    truth: &'a Truth,
+    recording: &'a Recording,
+    resolved: bool,
+    simulation: usize,
 }
 
 /// The first samples, with noise; a pressure that it makes negative is 0.

@@ -18,5 +18,5 @@ mod tree;
 pub use self::censored::MAX_COMPONENTS;
 pub use self::joint_speed::{Moments, correlations};
 pub use self::motion::{Motion, is_signed, motion, spread};
-pub use self::rigid::{RigidParts, rigid_parts};
+pub use self::rigid::{MIN_SENSORS, RigidParts, rigid_parts};
 pub use self::tree::{CoMotion, Pair, co_motion};

@@ -25,7 +25,8 @@ use crate::stages::sense::Tactile;
 
 /// Sensors of a piece, on the mean.
 const PIECE: usize = 6;
-
+/// Fewest sensors of which several parts can be found: two pieces.
+pub const MIN_SENSORS: usize = 2 * PIECE;
 /// Most pieces.
 const MAX_PIECES: usize = 100;
 /// Times that are read: for the many pieces, and for the few parts.
@@ -38,7 +39,6 @@ const UNEXPLAINED: f64 = 0.05;
 const FEW_ROUNDS: usize = 3;
 /// Turns in which a motion is found.
 const ROUNDS: usize = 6;
-
 /// Sensors of a set that its motion is found from, spread over all.
 const MAX_SENSORS: usize = 64;
 /// Sets that a set is tried with, the nearest: of the many pieces, and of the few parts.
@@ -47,14 +47,12 @@ const NEAR: [usize; 2] = [6, 3];
 const TOLERANCE: f64 = 0.01;
 /// What one set of two must cost less than both, for each time: it must be seen that they share a component.
 const MARGIN: f64 = 1.0;
-
 /// Roots beyond its components that a part must have at a time, on the mean. With fewer, any sensors fit.
 const SUPPORT: f64 = 1.0;
 /// Components that the motion of a small part must have: of one with less than half of the sensors that a part has in the
 /// middle. What feels fewer is no skin of a part, but a few sensors, such as those on the ends of cylinders, that feel alike
 /// on several parts.
 const LEAST_COMPONENTS: usize = 3;
-
 /// Most times that sensors go to the set that leaves least of them.
 const EXCHANGES: usize = 10;
 /// Most times that sets become one and sensors move.
@@ -151,7 +149,7 @@ impl Body<'_> {
 
     /// The parts of what was taken for one, if it is several.
     fn apart(&self, part: &[usize]) -> Option<Vec<usize>> {
-        if part.len() < 2 * PIECE {
+        if part.len() < MIN_SENSORS {
             return None;
         }
         let times = self.telling_times(part);
