@@ -173,26 +173,34 @@ impl<T: Copy> Matrix<T> {
             })
         };
         let (kind, width) = plain_type(path, &npy)?;
+        let transposed = (order == Order::C) != (wanted == Order::C);
+        // Lines of the file: rows in C order, columns in Fortran order.
+        let line = if order == Order::C { columns } else { rows };
+        let layout = Layout { line, transposed };
         let values = match (kind, width) {
-            (TypeChar::Float, 4) => collect(npy, path, |at, x: f32| checked(at, x.into())),
-            (TypeChar::Float, 8) => collect(npy, path, |at, x: f64| checked(at, x)),
-            (TypeChar::Int, 1) => collect(npy, path, |at, x: i8| checked(at, x.into())),
-            (TypeChar::Int, 2) => collect(npy, path, |at, x: i16| checked(at, x.into())),
-            (TypeChar::Int, 4) => collect(npy, path, |at, x: i32| checked(at, x.into())),
-            (TypeChar::Int, 8) => collect(npy, path, |at, x: i64| checked(at, x as f64)),
-            (TypeChar::Uint, 1) => collect(npy, path, |at, x: u8| checked(at, x.into())),
-            (TypeChar::Uint, 2) => collect(npy, path, |at, x: u16| checked(at, x.into())),
-            (TypeChar::Uint, 4) => collect(npy, path, |at, x: u32| checked(at, x.into())),
-            (TypeChar::Uint, 8) => collect(npy, path, |at, x: u64| checked(at, x as f64)),
+            (TypeChar::Float, 4) => collect(npy, path, layout, |at, x: f32| checked(at, x.into())),
+            (TypeChar::Float, 8) => collect(npy, path, layout, |at, x: f64| checked(at, x)),
+            (TypeChar::Int, 1) => collect(npy, path, layout, |at, x: i8| checked(at, x.into())),
+            (TypeChar::Int, 2) => collect(npy, path, layout, |at, x: i16| checked(at, x.into())),
+            (TypeChar::Int, 4) => collect(npy, path, layout, |at, x: i32| checked(at, x.into())),
+            (TypeChar::Int, 8) => collect(npy, path, layout, |at, x: i64| checked(at, x as f64)),
+            (TypeChar::Uint, 1) => collect(npy, path, layout, |at, x: u8| checked(at, x.into())),
+            (TypeChar::Uint, 2) => collect(npy, path, layout, |at, x: u16| checked(at, x.into())),
+            (TypeChar::Uint, 4) => collect(npy, path, layout, |at, x: u32| checked(at, x.into())),
+            (TypeChar::Uint, 8) => collect(npy, path, layout, |at, x: u64| checked(at, x as f64)),
             _ => Err(wrong_type(path, &npy)),
         }?;
-        let values = match (order, wanted) {
-            (Order::C, Order::Fortran) => transpose(&values, rows, columns),
-            (Order::Fortran, Order::C) => transpose(&values, columns, rows),
-            _ => values,
-        };
         Ok(Self { rows, columns, values })
     }
+}
+
+/// How values lie in a file, and how they are wanted.
+#[derive(Clone, Copy)]
+struct Layout {
+    /// Values of a line of the file.
+    line: usize,
+    /// Whether lines of the other direction are wanted.
+    transposed: bool,
 }
 
 /// A `.npy` file whose header was read.
@@ -280,36 +288,45 @@ fn check_header(start: &[u8]) -> Result<(), &'static str> {
     Ok(())
 }
 
-fn collect<S: Deserialize, T>(
+/// Reads all values in the wanted order. A large file takes the memory of its values once: those to be transposed are read a few
+/// lines at a time.
+fn collect<S: Deserialize, T: Copy>(
     npy: Npy,
     path: &Path,
+    Layout { line, transposed }: Layout,
     convert: impl Fn(usize, S) -> Result<T, FileError>,
 ) -> Result<Vec<T>, FileError> {
+    /// Lines that are read at a time: enough to fill what the memory hands over at once.
+    const LINES: usize = 64;
     let length = npy.len() as usize;
     let values = npy.data::<S>().map_err(|error| FileError::new(path, error))?;
-    let mut converted = Vec::with_capacity(length);
-    for (at, value) in values.enumerate() {
+    let mut values = values.enumerate().map(|(at, value)| {
         let value =
             value.map_err(|error| FileError::new(path, format!("is truncated or damaged: {error}")))?;
-        converted.push(convert(at, value)?);
+        convert(at, value)
+    });
+    if !transposed {
+        // Not by `collect`, which would not know the length, and take up to twice the memory.
+        let mut converted = Vec::with_capacity(length);
+        for value in values {
+            converted.push(value?);
+        }
+        return Ok(converted);
     }
-    Ok(converted)
-}
-
-/// From `rows` rows of `columns` values to `columns` rows of `rows`, in squares that fit the cache.
-fn transpose<T: Copy>(values: &[T], rows: usize, columns: usize) -> Vec<T> {
-    const SIDE: usize = 32;
-    let mut transposed = vec![values[0]; values.len()];
-    for top in (0..rows).step_by(SIDE) {
-        for left in (0..columns).step_by(SIDE) {
-            for row in top..(top + SIDE).min(rows) {
-                for column in left..(left + SIDE).min(columns) {
-                    transposed[column * rows + row] = values[row * columns + column];
-                }
-            }
+    let lines = length / line;
+    let mut converted = Vec::new();
+    for first in (0..lines).step_by(LINES) {
+        let count = LINES.min(lines - first);
+        let band: Vec<T> = values.by_ref().take(count * line).collect::<Result<_, _>>()?;
+        if converted.is_empty() {
+            converted = vec![band[0]; length];
+        }
+        for at in 0..line {
+            let to = &mut converted[at * lines + first..][..count];
+            to.iter_mut().zip(band[at..].iter().step_by(line)).for_each(|(to, value)| *to = *value);
         }
     }
-    transposed
+    Ok(converted)
 }
 
 #[cfg(test)]

@@ -15,7 +15,8 @@ fn what_was_written_is_read_in_either_order() {
     write_tactile(&fortran, &tactile).unwrap();
     assert_eq!(read_tactile(&fortran).unwrap(), tactile);
 
-    let by_time = transpose(&tactile.pressures, sensors, samples);
+    let at = |t: usize| (0..sensors).map(move |sensor| sensor * samples + t);
+    let by_time: Vec<f32> = (0..samples).flat_map(at).map(|at| tactile.pressures[at]).collect();
     let c = folder.path().join("c.npy");
     write(&c, [samples, sensors], Order::C, by_time.iter().map(|&x| f64::from(x))).unwrap();
     assert_eq!(read_tactile(&c).unwrap(), tactile);

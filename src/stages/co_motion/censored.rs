@@ -12,86 +12,82 @@
 //! Pressures that are also negative (of an incompressible medium behind a sensor, say) are roots with a sign; their principal
 //! components are w.
 
-use nalgebra::{DMatrix, DVectorView, SMatrix, SVector};
+use faer::Mat;
+use rayon::prelude::*;
 
-use crate::numerics::simd::vectorised;
+use super::regressions::{MAX_REGRESSORS, pairs};
+use super::turns::Turns;
+use crate::numerics::eigen::largest;
 
 /// Most numbers of a motion: velocity and rate of a rigid body.
-pub const MAX_COMPONENTS: usize = 6;
-/// Turns in which w is found at a time from given c, each with the sensors that the last one leaves wrong.
+pub const MAX_COMPONENTS: usize = MAX_REGRESSORS;
+/// Turns in which c is found from given w, or w from given c, each with the roots that the last one leaves wrong.
 const TURNS: usize = 4;
 /// Share of the strongest sensor's root at the same time from which on a sensor feels something; a weaker one only says
 /// that c · w is no more than what it feels.
 const FELT: f64 = 0.1;
-/// Weight of no motion beside what is felt, where that leaves w undetermined.
-const RIDGE: f64 = 1e-6;
-
-/// Up to six numbers, the last ones 0.
-pub type Column = SVector<f64, MAX_COMPONENTS>;
-
-/// Runs an expression with a number of components that the compiler knows.
-macro_rules! with_components {
-    ($k:expr, $name:ident => $run:expr) => {
-        match $k {
-            1 => {
-                const $name: usize = 1;
-                $run
-            }
-            2 => {
-                const $name: usize = 2;
-                $run
-            }
-            3 => {
-                const $name: usize = 3;
-                $run
-            }
-            4 => {
-                const $name: usize = 4;
-                $run
-            }
-            5 => {
-                const $name: usize = 5;
-                $run
-            }
-            6 => {
-                const $name: usize = MAX_COMPONENTS;
-                $run
-            }
-            other => unreachable!("{other} components"),
-        }
-    };
-}
+/// Share of the largest of what c spans along its axes, squared, from which on an axis is one.
+const SPANNED: f64 = 1e-12;
+/// Sensors whose share is found at once.
+const SENSORS: usize = 64;
 
 /// Roots of the pressures on some sensors at some times.
 pub struct Roots {
-    /// Sensors × times.
-    values: DMatrix<f64>,
+    /// Times × sensors.
+    values: Mat<f64>,
     /// At each time, that from which on a sensor feels something.
     felt: Vec<f64>,
     /// Whether negative pressures are felt.
     signed: bool,
 }
 
-/// Where the turns begin: series that are linear in the motion, and their principal axes.
+/// c of some sensors and w at some times, up to six components, the most important first: where the turns begin.
 pub struct Start {
-    unlike: DMatrix<f64>,
-    axes: DMatrix<f64>,
+    /// Sensors × components.
+    loadings: Mat<f64>,
+    /// Times × components.
+    motions: Mat<f64>,
 }
 
 /// c of some sensors and w at some times.
 pub struct Fit {
-    /// k.
-    pub components: usize,
-    /// c of each sensor; its columns are orthonormal.
-    pub loadings: Vec<Column>,
-    /// w at each time.
-    pub motions: Vec<Column>,
-    /// Share of the squares of all roots that is left.
-    pub left: f64,
+    /// Sensors × k; the columns are orthonormal.
+    loadings: Mat<f64>,
+    /// Times × k.
+    motions: Mat<f64>,
     /// Squares that are left of roots that tell something, for each time.
     pub residual: f64,
     /// Roots that tell something, for each time, beyond the k that w takes.
     pub spare: f64,
+}
+
+impl Start {
+    /// Most components.
+    pub fn components(&self) -> usize {
+        self.loadings.ncols()
+    }
+}
+
+impl Fit {
+    /// k.
+    pub fn components(&self) -> usize {
+        self.loadings.ncols()
+    }
+
+    /// Number of sensors.
+    pub fn sensors(&self) -> usize {
+        self.loadings.nrows()
+    }
+
+    /// Number of times.
+    pub fn times(&self) -> usize {
+        self.motions.nrows()
+    }
+
+    /// The sum of w wᵀ over times.
+    pub fn scatter(&self) -> Mat<f64> {
+        self.motions.transpose() * &self.motions
+    }
 }
 
 impl Roots {
@@ -101,30 +97,36 @@ impl Roots {
             true => f64::from(pressure.abs()).sqrt().copysign(f64::from(pressure)),
             false => f64::from(pressure.max(0.0)).sqrt(),
         };
-        Self::new(
-            DMatrix::from_fn(series.len(), times.len(), |sensor, t| root(series[sensor][times[t]])),
-            signed,
-        )
+        let values = Mat::from_fn(times.len(), series.len(), |t, sensor| root(series[sensor][times[t]]));
+        Self::new(values, signed)
     }
 
-    fn new(values: DMatrix<f64>, signed: bool) -> Self {
-        let felt = |roots: DVectorView<f64>| {
-            if signed { f64::NEG_INFINITY } else { (FELT * roots.max()).max(f64::MIN_POSITIVE) }
+    fn new(values: Mat<f64>, signed: bool) -> Self {
+        let felt = if signed {
+            vec![f64::NEG_INFINITY; values.nrows()]
+        } else {
+            let mut most = vec![0.0; values.nrows()];
+            for sensor in 0..values.ncols() {
+                let roots = values.col_as_slice(sensor);
+                most.iter_mut().zip(roots).for_each(|(most, root)| *most = f64::max(*most, *root));
+            }
+            most.into_iter().map(|most| f64::max(FELT * most, f64::MIN_POSITIVE)).collect()
         };
-        Self { felt: values.column_iter().map(felt).collect(), values, signed }
+        Self { values, felt, signed }
     }
 
     /// Of these sensors only.
     pub fn select(&self, sensors: &[usize]) -> Self {
-        Self::new(self.values.select_rows(sensors), self.signed)
+        Self::new(columns(&self.values, sensors), self.signed)
     }
 
     /// Divided by the root mean square of each sensor, where it feels anything.
     pub fn normalised(mut self) -> Self {
-        for mut row in self.values.row_iter_mut() {
-            let scale = (row.norm_squared() / row.len() as f64).sqrt();
+        for sensor in 0..self.sensors() {
+            let roots = self.values.col_as_slice_mut(sensor);
+            let scale = (roots.iter().map(|root| root * root).sum::<f64>() / roots.len() as f64).sqrt();
             if scale > 0.0 {
-                row /= scale;
+                roots.iter_mut().for_each(|root| *root /= scale);
             }
         }
         Self::new(self.values, self.signed)
@@ -132,245 +134,134 @@ impl Roots {
 
     /// Number of sensors.
     pub fn sensors(&self) -> usize {
-        self.values.nrows()
+        self.values.ncols()
     }
 
     /// Number of times.
     pub fn times(&self) -> usize {
-        self.felt.len()
+        self.values.nrows()
     }
 
     /// Whether nothing is felt.
     pub fn is_empty(&self) -> bool {
-        self.values.iter().all(|root| *root == 0.0)
+        self.values.norm_max() == 0.0
     }
 
-    /// Where the turns begin.
+    /// Where the turns begin: along the principal axes of series that are linear in the motion.
     pub fn start(&self) -> Start {
         let unlike = if self.signed { self.values.clone() } else { self.differences() };
-        Start { axes: principal_axes(&unlike), unlike }
+        let loadings = principal_axes(&(unlike.transpose() * &unlike));
+        Start { motions: &unlike * &loadings, loadings }
     }
 
     /// Each sensor's root minus that of the sensor that feels least at the times at which it does.
-    fn differences(&self) -> DMatrix<f64> {
-        let roots = &self.values;
-        let together = roots * roots.transpose();
+    fn differences(&self) -> Mat<f64> {
+        let together = self.values.transpose() * &self.values;
         let opposite = |sensor: usize| {
-            let alive = (0..roots.nrows()).filter(|other| together[(*other, *other)] > 0.0);
+            let alive = (0..self.sensors()).filter(|other| together[(*other, *other)] > 0.0);
             let likeness = |other: usize| together[(sensor, other)] / together[(other, other)].sqrt();
             alive.min_by(|a, b| likeness(*a).total_cmp(&likeness(*b))).unwrap_or(sensor)
         };
-        let opposites: Vec<usize> = (0..roots.nrows()).map(opposite).collect();
-        roots - roots.select_rows(&opposites)
+        let opposites: Vec<usize> = (0..self.sensors()).map(opposite).collect();
+        &self.values - columns(&self.values, &opposites)
     }
 
-    /// Finds c and w of k components in so many turns. k is at most [`MAX_COMPONENTS`] and the number of sensors.
+    /// Finds c and w of k components in so many turns. k is at most that of the start.
     pub fn fit(&self, start: &Start, components: usize, rounds: usize) -> Fit {
         let rounds = if self.signed { 1 } else { rounds };
-        with_components!(components, K => vectorised(
-            #[inline(always)]
-            || self.fit_of::<K>(start, rounds)
-        ))
+        let mut loadings = start.loadings.subcols(0, components).to_owned();
+        let mut motions = start.motions.subcols(0, components).to_owned();
+        let mut turns = Turns::new(self.values.as_ref(), &self.felt);
+        for _ in 0..rounds {
+            turns.move_all(loadings.as_ref(), motions.as_mut());
+            turns.load_all(loadings.as_mut(), motions.as_ref(), pairs(motions.as_ref()).as_ref());
+            orthonormalise(&mut loadings, &mut motions);
+        }
+        turns.move_all(loadings.as_ref(), motions.as_mut());
+        let [residual, spare] = turns.residual_and_spare(loadings.as_ref(), motions.as_ref());
+        Fit { residual, spare, loadings, motions }
     }
 
-    #[inline(always)]
-    fn fit_of<const K: usize>(&self, start: &Start, rounds: usize) -> Fit {
-        let axes = start.axes.columns(0, K);
-        let mut rows: Vec<SVector<f64, K>> =
-            axes.row_iter().map(|row| SVector::from_fn(|at, _| row[at])).collect();
-        let first = axes.transpose() * &start.unlike;
-        let mut motions: Vec<SVector<f64, K>> =
-            first.column_iter().map(|column| SVector::from_fn(|at, _| column[at])).collect();
-        for _ in 0..rounds {
-            self.move_all(&rows, &mut motions);
-            rows = self.loadings_of(&rows, &motions);
-            orthonormalise(&mut rows, &mut motions);
-        }
-        self.move_all(&rows, &mut motions);
-        let (mut left, mut residual, mut spare) = (0.0, 0.0, 0.0);
-        for (t, motion) in motions.iter().enumerate() {
-            let mut telling = 0;
-            for (c, &root) in rows.iter().zip(self.values.column(t).iter()) {
-                let reach = c.dot(motion);
-                left += (root - self.felt_of(reach)).powi(2);
-                if self.tells(t, root, reach) {
-                    residual += (root - reach).powi(2);
-                    telling += 1;
-                }
-            }
-            spare += f64::max(0.0, f64::from(telling) - K as f64);
-        }
-        let times = self.times() as f64;
-        Fit {
-            components: K,
-            loadings: rows.iter().map(padded).collect(),
-            motions: motions.iter().map(padded).collect(),
-            left: left / self.values.norm_squared(),
-            residual: residual / times,
-            spare: spare / times,
-        }
+    /// The share of the squares of all roots that a fit leaves.
+    pub fn left_of_all(&self, fit: &Fit) -> f64 {
+        self.left_at_times(fit).iter().sum::<f64>() / self.values.squared_norm_l2()
     }
 
     /// The squares that a fit leaves at each time.
     pub fn left_at_times(&self, fit: &Fit) -> Vec<f64> {
-        let left = |(t, motion): (usize, &Column)| {
-            let own = |(c, root): (&Column, &f64)| (root - self.felt_of(c.dot(motion))).powi(2);
-            fit.loadings.iter().zip(self.values.column(t).iter()).map(own).sum()
-        };
-        fit.motions.iter().enumerate().map(left).collect()
-    }
-
-    /// Whether a root says something of a motion: it is felt, or should be.
-    #[inline(always)]
-    fn tells(&self, t: usize, root: f64, reach: f64) -> bool {
-        root >= self.felt[t] || reach > root
+        let mut left = vec![0.0; self.times()];
+        let reaches = &fit.motions * fit.loadings.transpose();
+        for sensor in 0..self.sensors() {
+            let own = reaches.col_as_slice(sensor).iter().zip(self.values.col_as_slice(sensor));
+            for (left, (reach, root)) in left.iter_mut().zip(own) {
+                *left += (root - self.felt_of(*reach)).powi(2);
+            }
+        }
+        left
     }
 
     /// What a sensor feels of c · w.
-    #[inline(always)]
     fn felt_of(&self, reach: f64) -> f64 {
         if self.signed { reach } else { reach.max(0.0) }
     }
 
-    #[inline(always)]
-    fn move_all<const K: usize>(&self, rows: &[SVector<f64, K>], motions: &mut [SVector<f64, K>]) {
-        for (t, motion) in motions.iter_mut().enumerate() {
-            *motion = self.motion_at(t, rows, motion);
-        }
+    /// w at all times from given c, of a fit to the same sensors at other times: T × k, by time.
+    pub fn motions(&self, fit: &Fit) -> Vec<f64> {
+        let k = fit.components();
+        let mut motions = Mat::zeros(self.times(), k);
+        let mut turns = Turns::new(self.values.as_ref(), &self.felt);
+        (0..TURNS).for_each(|_| turns.move_all(fit.loadings.as_ref(), motions.as_mut()));
+        (0..self.times()).flat_map(|t| (0..k).map(move |at| (t, at))).map(|at| motions[at]).collect()
     }
 
-    /// w at a time by least squares over the sensors that feel something, and those that should by w as it was `before`.
-    #[inline(always)]
-    fn motion_at<const K: usize>(
-        &self,
-        t: usize,
-        rows: &[SVector<f64, K>],
-        before: &SVector<f64, K>,
-    ) -> SVector<f64, K> {
-        let mut sums = Sums::default();
-        for (c, &root) in rows.iter().zip(self.values.column(t).iter()) {
-            if self.tells(t, root, c.dot(before)) {
-                sums.add(c, root);
-            }
-        }
-        sums.solve()
-    }
-
-    /// c of all sensors by least squares over the times at which each feels something, or should by c as it was.
-    #[inline(always)]
-    fn loadings_of<const K: usize>(
-        &self,
-        rows: &[SVector<f64, K>],
-        motions: &[SVector<f64, K>],
-    ) -> Vec<SVector<f64, K>> {
-        let mut sums = vec![Sums::default(); rows.len()];
-        for (t, motion) in motions.iter().enumerate() {
-            for ((sums, c), &root) in sums.iter_mut().zip(rows).zip(self.values.column(t).iter()) {
-                if self.tells(t, root, c.dot(motion)) {
-                    sums.add(motion, root);
-                }
-            }
-        }
-        sums.iter().map(Sums::solve).collect()
-    }
-
-    /// w at all times from given c of k components: T × k, by time.
-    pub fn motions(&self, loadings: &[Column], components: usize) -> Vec<f64> {
-        with_components!(components, K => {
-            let rows: Vec<SVector<f64, K>> = loadings.iter().map(cut).collect();
-            let motion = |t: usize| {
-                (0..TURNS).fold(SVector::<f64, K>::zeros(), |found, _| self.motion_at(t, &rows, &found))
-            };
-            (0..self.times()).flat_map(|t| motion(t).iter().copied().collect::<Vec<_>>()).collect()
-        })
-    }
-
-    /// The share of a sensor's squares that c · w leaves with its best c, for w of k components of some part at these times; 1 if it
+    /// The share of each sensor's squares that c · w leaves with its best c, for w of a fit to any sensors at these times; 1 if it
     /// feels nothing.
-    pub fn left(&self, sensor: usize, motions: &[Column], components: usize) -> f64 {
-        with_components!(components, K => vectorised(
-            #[inline(always)]
-            || self.left_of::<K>(sensor, motions)
-        ))
-    }
-
-    #[inline(always)]
-    fn left_of<const K: usize>(&self, sensor: usize, motions: &[Column]) -> f64 {
-        let own: Vec<f64> = self.values.row(sensor).iter().copied().collect();
-        let motions = || motions.iter().map(cut::<K>).zip(own.iter()).enumerate();
-        let mut c = SVector::<f64, K>::zeros();
-        for _ in 0..TURNS {
-            let mut sums = Sums::default();
-            for (t, (motion, &root)) in motions() {
-                if self.tells(t, root, c.dot(&motion)) {
-                    sums.add(&motion, root);
-                }
-            }
-            c = sums.solve();
-        }
-        let left = motions().map(|(_, (motion, root))| (root - self.felt_of(c.dot(&motion))).powi(2));
-        let all: f64 = own.iter().map(|root| root * root).sum();
-        if all > 0.0 { left.sum::<f64>() / all } else { 1.0 }
+    pub fn left(&self, fit: &Fit) -> Vec<f64> {
+        let motions = fit.motions.as_ref();
+        let of_motions = pairs(motions);
+        let firsts: Vec<usize> = (0..self.sensors()).step_by(SENSORS).collect();
+        let left = |sensor: usize| {
+            let count = SENSORS.min(self.sensors() - sensor);
+            let mut loadings = Mat::zeros(count, fit.components());
+            let mut turns = Turns::new(self.values.subcols(sensor, count), &self.felt);
+            (0..TURNS).for_each(|_| turns.load_all(loadings.as_mut(), motions, of_motions.as_ref()));
+            let reaches = &fit.motions * loadings.transpose();
+            let share = |at: usize| {
+                let roots = self.values.col_as_slice(sensor + at);
+                let all: f64 = roots.iter().map(|root| root * root).sum();
+                let left = roots.iter().zip(reaches.col_as_slice(at));
+                let left: f64 = left.map(|(root, reach)| (root - self.felt_of(*reach)).powi(2)).sum();
+                if all > 0.0 { left / all } else { 1.0 }
+            };
+            (0..count).map(share).collect::<Vec<f64>>()
+        };
+        firsts.into_par_iter().flat_map(left).collect()
     }
 }
 
-/// Normal equations of a regression.
-#[derive(Clone)]
-struct Sums<const K: usize> {
-    squares: SMatrix<f64, K, K>,
-    products: SVector<f64, K>,
+/// Some columns.
+fn columns(matrix: &Mat<f64>, which: &[usize]) -> Mat<f64> {
+    Mat::from_fn(matrix.nrows(), which.len(), |row, at| matrix[(row, which[at])])
 }
 
-impl<const K: usize> Default for Sums<K> {
-    fn default() -> Self {
-        Self { squares: SMatrix::zeros(), products: SVector::zeros() }
-    }
-}
-
-impl<const K: usize> Sums<K> {
-    #[inline(always)]
-    fn add(&mut self, x: &SVector<f64, K>, y: f64) {
-        self.squares += x * x.transpose();
-        self.products += y * x;
-    }
-
-    /// Nearly 0 where the equations leave it open.
-    #[inline(always)]
-    fn solve(&self) -> SVector<f64, K> {
-        let mut squares = self.squares;
-        let mean = squares.trace() / K as f64;
-        let ridge = if mean > 0.0 { RIDGE * mean } else { 1.0 };
-        for at in 0..K {
-            squares[(at, at)] += ridge;
-        }
-        squares.cholesky().map_or_else(SVector::zeros, |factor| factor.solve(&self.products))
-    }
-}
-
-fn padded<const K: usize>(column: &SVector<f64, K>) -> Column {
-    Column::from_fn(|at, _| column.get(at).copied().unwrap_or_default())
-}
-
-fn cut<const K: usize>(column: &Column) -> SVector<f64, K> {
-    SVector::from_fn(|at, _| column[at])
-}
-
-/// Eigenvectors of X Xᵀ, by descending eigenvalue.
-fn principal_axes(x: &DMatrix<f64>) -> DMatrix<f64> {
-    let eigen = (x * x.transpose()).symmetric_eigen();
-    let mut order: Vec<usize> = (0..x.nrows()).collect();
-    order.sort_by(|a, b| eigen.eigenvalues[*b].total_cmp(&eigen.eigenvalues[*a]));
-    eigen.eigenvectors.select_columns(&order)
+/// The first eigenvectors, by descending eigenvalue.
+fn principal_axes(squares: &Mat<f64>) -> Mat<f64> {
+    largest(squares.as_ref(), MAX_COMPONENTS).map_or_else(
+        |_| Mat::identity(squares.nrows(), MAX_COMPONENTS.min(squares.nrows())),
+        |eigen| eigen.vectors,
+    )
 }
 
 /// Makes the columns of c orthonormal along its principal axes, and turns w with it.
-fn orthonormalise<const K: usize>(rows: &mut [SVector<f64, K>], motions: &mut [SVector<f64, K>]) {
-    let loadings = DMatrix::from_fn(rows.len(), K, |row, at| rows[row][at]);
-    let svd = loadings.svd(true, true);
-    let (left, right) = (svd.u.expect("it was asked for"), svd.v_t.expect("it was asked for"));
-    for (at, row) in rows.iter_mut().enumerate() {
-        *row = SVector::from_fn(|column, _| left[(at, column)]);
-    }
-    let turn = SMatrix::<f64, K, K>::from_fn(|row, column| svd.singular_values[row] * right[(row, column)]);
-    motions.iter_mut().for_each(|motion| *motion = turn * *motion);
+fn orthonormalise(loadings: &mut Mat<f64>, motions: &mut Mat<f64>) {
+    let Ok(eigen) = largest((loadings.transpose() * &*loadings).as_ref(), loadings.ncols()) else { return };
+    let least = SPANNED * eigen.values[0];
+    let turn = |scale: &dyn Fn(f64) -> f64| {
+        Mat::from_fn(eigen.vectors.nrows(), eigen.vectors.ncols(), |row, at| {
+            let value = eigen.values[at];
+            if value > least { eigen.vectors[(row, at)] * scale(value.sqrt()) } else { 0.0 }
+        })
+    };
+    *loadings = &*loadings * turn(&f64::recip);
+    *motions = &*motions * turn(&|span| span);
 }

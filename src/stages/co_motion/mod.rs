@@ -12,8 +12,10 @@
 mod censored;
 mod joint_speed;
 mod motion;
+mod regressions;
 mod rigid;
 mod tree;
+mod turns;
 
 pub use self::censored::MAX_COMPONENTS;
 pub use self::joint_speed::{Moments, correlations};

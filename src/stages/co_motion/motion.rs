@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::censored::{Fit, MAX_COMPONENTS, Roots};
+use super::censored::{Fit, Roots};
 use crate::stages::sense::Tactile;
 
 /// Sensors of a part that are read, spread over all: enough for six numbers.
@@ -17,7 +17,7 @@ const NEGLIGIBLE: f64 = 0.01;
 /// What a part feels of its own motion.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Motion {
-    /// k, at most [`MAX_COMPONENTS`]; 0 if the part feels nothing.
+    /// k, at most [`MAX_COMPONENTS`](super::MAX_COMPONENTS); 0 if the part feels nothing.
     pub components: usize,
     /// T × k, by time, in √Pa; along the principal axes of what the sensors feel.
     pub values: Vec<f64>,
@@ -36,19 +36,18 @@ impl Motion {
 /// felt. All series have T pressures, which must be finite.
 pub fn motion(series: &[&[f32]], components: Option<usize>, signed: bool) -> Motion {
     /// Times whose roots are gathered at once.
-    const BLOCK: usize = 256;
+    const BLOCK: usize = 240;
     let series: Vec<&[f32]> = spread(series.len(), MAX_SENSORS).map(|sensor| series[sensor]).collect();
     let samples = series.first().map_or(0, |series| series.len());
-    let Some(Fit { loadings, components: k, .. }) =
-        learn(&Roots::at(&series, &felt_times(&series, samples), signed), components)
-    else {
+    let Some(fit) = learn(&Roots::at(&series, &felt_times(&series, samples), signed), components) else {
         return Motion { components: 0, values: Vec::new() };
     };
+    let k = fit.components();
     let mut values = vec![0.0; samples * k];
     values.par_chunks_mut(BLOCK * k).enumerate().for_each(|(block, values)| {
         let times: Vec<usize> = (block * BLOCK..block * BLOCK + values.len() / k).collect();
         let roots = Roots::at(&series, &times, signed);
-        values.copy_from_slice(&roots.motions(&loadings, k));
+        values.copy_from_slice(&roots.motions(&fit));
     });
     Motion { components: k, values }
 }
@@ -93,13 +92,18 @@ fn learn(roots: &Roots, components: Option<usize>) -> Option<Fit> {
     if roots.is_empty() {
         return None;
     }
-    let (start, most) = (roots.start(), MAX_COMPONENTS.min(roots.sensors()));
+    let start = roots.start();
+    let most = start.components();
     if let Some(k) = components {
         return Some(roots.fit(&start, k.min(most), ROUNDS));
     }
-    let fits: Vec<Fit> = (1..=most).into_par_iter().map(|k| roots.fit(&start, k, ROUNDS)).collect();
-    let least = fits.iter().map(|fit| fit.left).fold(f64::INFINITY, f64::min);
-    fits.into_iter().find(|fit| fit.left - least <= NEGLIGIBLE * (1.0 - least))
+    let with = |k: usize| {
+        let fit = roots.fit(&start, k, ROUNDS);
+        (roots.left_of_all(&fit), fit)
+    };
+    let fits: Vec<(f64, Fit)> = (1..=most).into_par_iter().map(with).collect();
+    let least = fits.iter().map(|(left, _)| *left).fold(f64::INFINITY, f64::min);
+    fits.into_iter().find(|(left, _)| left - least <= NEGLIGIBLE * (1.0 - least)).map(|(_, fit)| fit)
 }
 
 #[cfg(test)]

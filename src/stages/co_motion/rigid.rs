@@ -2,21 +2,16 @@
 //!
 //! In: pressures, and the distances between sensors. Out: the [part](RigidParts) of each sensor. The number of parts is found,
 //! too. Neighbours in the distances make small pieces, which nearly always are pieces of one part. Then, in turns, two sets of
-//! sensors become one where that [costs](cost) least, and each sensor goes to the set whose motion leaves least of it. A part
+//! sensors become one where that [costs](set::Set::cost) least, and each sensor goes to the set whose motion leaves least of it. A part
 //! that one motion does not explain at the times that tell most of it is looked at anew, by itself.
-//!
-//! The cost of a set is what it takes to tell what its sensors feel up to a tolerance: for each component of its motion half
-//! the logarithm of its variance, and for each root beyond these half that of what is left of it, both over the tolerance
-//! (the likelihood of probabilistic principal components, Tipping and Bishop 1999; here over roots that tell something), and
-//! half a logarithm of the number of times for each c. Two sets of one part share components, so that one of both costs less.
 
 use std::collections::BTreeMap;
 
 use kodama::Method;
-use nalgebra::SMatrix;
 use rayon::prelude::*;
 
-use super::censored::{Column, Fit, MAX_COMPONENTS, Roots};
+use self::set::{MAX_SENSORS, Set, set, union};
+use super::censored::Roots;
 use super::motion::{is_signed, spread};
 use crate::numerics::linkage;
 use crate::numerics::partition::named_by_appearance;
@@ -37,14 +32,8 @@ const CHOICE: usize = 4;
 const UNEXPLAINED: f64 = 0.05;
 /// Turns in which the motion of the body as a whole is found.
 const FEW_ROUNDS: usize = 3;
-/// Turns in which a motion is found.
-const ROUNDS: usize = 6;
-/// Sensors of a set that its motion is found from, spread over all.
-const MAX_SENSORS: usize = 64;
 /// Sets that a set is tried with, the nearest: of the many pieces, and of the few parts.
 const NEAR: [usize; 2] = [6, 3];
-/// The share of a sensor's squares that is left unexplained without cost.
-const TOLERANCE: f64 = 0.01;
 /// What one set of two must cost less than both, for each time: it must be seen that they share a component.
 const MARGIN: f64 = 1.0;
 /// Roots beyond its components that a part must have at a time, on the mean. With fewer, any sensors fit.
@@ -83,8 +72,9 @@ pub fn rigid_parts(tactile: &Tactile, sensors: &[usize], distances: &Distances) 
     let found = body.parts_of(&every, &times);
     let labels = body.taken_apart(found.clone());
     let fine = Search { roots: body.roots(&every, &times[1]), distances };
-    let labels = if labels == found { labels } else { fine.exchanged(labels, true) };
-    assigned(&fine.roots, &labels, &Roots::at(&all, &times[1], signed).normalised())
+    let sets = fine.sets(members(&labels), Vec::new());
+    let sets = if labels == found { sets } else { fine.exchanged(sets, true) };
+    assigned(&sets, &Roots::at(&all, &times[1], signed).normalised())
 }
 
 /// What some sensors of a body feel.
@@ -107,7 +97,8 @@ impl Body<'_> {
         TIMES.map(|count| {
             let times: Vec<usize> = spread(self.series[0].len(), CHOICE * count).collect();
             let roots = self.roots(&some, &times);
-            let fit = roots.fit(&roots.start(), MAX_COMPONENTS.min(some.len()), FEW_ROUNDS);
+            let start = roots.start();
+            let fit = roots.fit(&start, start.components(), FEW_ROUNDS);
             let mut order: Vec<(f64, usize)> = roots.left_at_times(&fit).into_iter().zip(times).collect();
             order.sort_by(|a, b| b.0.total_cmp(&a.0));
             let mut chosen: Vec<usize> = order.into_iter().take(count).map(|(_, t)| t).collect();
@@ -123,10 +114,12 @@ impl Body<'_> {
         let distances = &Distances { sensors: n, values: values.collect() };
         let pieces = (n / PIECE).clamp(1, MAX_PIECES);
         let labels = linkage::clusters(n, |i, j| distances.get(i, j), Method::Average, pieces);
-        let search = Search { roots: self.roots(sensors, &times[0]), distances };
-        let labels = search.exchanged(search.merged(labels, NEAR[0], 0.0), false);
-        let labels = search.settled(labels, usize::MAX);
-        Search { roots: self.roots(sensors, &times[1]), distances }.settled(labels, NEAR[1])
+        let coarse = Search { roots: self.roots(sensors, &times[0]), distances };
+        let sets = coarse.sets(members(&labels), Vec::new());
+        let sets = coarse.exchanged(coarse.merged(sets, NEAR[0], 0.0), false);
+        let labels = labels_of(&coarse.settled(sets, usize::MAX));
+        let fine = Search { roots: self.roots(sensors, &times[1]), distances };
+        labels_of(&fine.settled(fine.sets(members(&labels), Vec::new()), NEAR[1]))
     }
 
     /// Takes parts apart, and what comes of them, where one motion does not explain what is felt at the times that tell most of
@@ -155,14 +148,15 @@ impl Body<'_> {
         let times = self.telling_times(part);
         let roots = self.roots(part, &times[1]);
         let every: Vec<usize> = (0..part.len()).collect();
-        let (whole, fit) = best_fit(&roots, &every, 1, MAX_COMPONENTS);
-        if fit.residual <= UNEXPLAINED * fit.spare {
+        let whole = set(&roots, every);
+        if whole.fit.residual <= UNEXPLAINED * whole.fit.spare {
             return None;
         }
         let labels = self.parts_of(part, &times);
         let parts = members(&labels);
-        let sum: f64 = parts.iter().map(|own| best_fit(&roots, own, 1, MAX_COMPONENTS).0).sum();
-        (parts.len() > 1 && whole - sum > MARGIN).then_some(labels)
+        let count = parts.len();
+        let sum: f64 = parts.into_iter().map(|own| set(&roots, own).cost).sum();
+        (count > 1 && whole.cost - sum > MARGIN).then_some(labels)
     }
 }
 
@@ -172,37 +166,36 @@ struct Search<'a> {
     distances: &'a Distances,
 }
 
-/// A set of sensors.
-struct Set {
-    sensors: Vec<usize>,
-    cost: f64,
-    components: usize,
-}
-
 impl Search<'_> {
+    /// Sets of these members; some are known.
+    fn sets(&self, members: Vec<Vec<usize>>, known: Vec<Set>) -> Vec<Set> {
+        let mut known: BTreeMap<Vec<usize>, Set> =
+            known.into_iter().map(|set| (set.sensors.clone(), set)).collect();
+        let found: Vec<_> = members.into_iter().map(|own| (known.remove(&own), own)).collect();
+        found.into_par_iter().map(|(known, own)| known.unwrap_or_else(|| set(&self.roots, own))).collect()
+    }
+
     /// Makes one of two sets, of each and its `near` nearest, and moves sensors, until nothing changes.
-    fn settled(&self, mut labels: Vec<usize>, near: usize) -> Vec<usize> {
+    fn settled(&self, mut sets: Vec<Set>, near: usize) -> Vec<Set> {
         for _ in 0..CYCLES {
-            let before = labels.clone();
-            labels = self.exchanged(self.merged(labels, near, MARGIN), true);
-            if labels == before {
+            let before = labels_of(&sets);
+            sets = self.exchanged(self.merged(sets, near, MARGIN), true);
+            if labels_of(&sets) == before {
                 break;
             }
         }
-        labels
+        sets
     }
 
     /// Makes one of two sets, of each and its `near` nearest, where that saves most, as long as it saves more than `margin`.
-    fn merged(&self, labels: Vec<usize>, near: usize, margin: f64) -> Vec<usize> {
-        let first: Vec<Set> =
-            members(&labels).into_par_iter().map(|own| self.set(own, 1, MAX_COMPONENTS)).collect();
-        let mut sets: BTreeMap<usize, Set> = first.into_iter().enumerate().collect();
-        let mut tried: BTreeMap<(usize, usize), Set> = BTreeMap::new();
+    fn merged(&self, sets: Vec<Set>, near: usize, margin: f64) -> Vec<Set> {
         let mut name = sets.len();
+        let mut sets: BTreeMap<usize, Set> = sets.into_iter().enumerate().collect();
+        let mut tried: BTreeMap<(usize, usize), Set> = BTreeMap::new();
         while sets.len() > 1 {
             let new: Vec<(usize, usize)> =
                 self.pairs(&sets, near).into_iter().filter(|pair| !tried.contains_key(pair)).collect();
-            let made = new.into_par_iter().map(|(a, b)| ((a, b), self.union(&sets[&a], &sets[&b])));
+            let made = new.into_par_iter().map(|(a, b)| ((a, b), union(&self.roots, &sets[&a], &sets[&b])));
             tried.extend(made.collect::<Vec<_>>());
             let saved = |(&(a, b), both): (&(usize, usize), &Set)| sets[&a].cost + sets[&b].cost - both.cost;
             let Some((most, pair)) = tried
@@ -221,11 +214,7 @@ impl Search<'_> {
             sets.insert(name, both);
             name += 1;
         }
-        let mut labels = labels;
-        for (at, set) in sets.values().enumerate() {
-            set.sensors.iter().for_each(|&sensor| labels[sensor] = at);
-        }
-        named_by_appearance(&labels)
+        sets.into_values().collect()
     }
 
     /// Each set with its nearest ones.
@@ -258,90 +247,31 @@ impl Search<'_> {
         pairs
     }
 
-    fn union(&self, a: &Set, b: &Set) -> Set {
-        let sensors = [a.sensors.as_slice(), &b.sensors].concat();
-        self.set(sensors, a.components.max(b.components), a.components + b.components)
-    }
-
-    /// A set, with the number of components, in a range, that makes it cost least.
-    fn set(&self, sensors: Vec<usize>, least: usize, most: usize) -> Set {
-        let (cost, fit) = best_fit(&self.roots, &sensors, least, most);
-        Set { sensors, cost, components: fit.components }
-    }
-
     /// Moves each sensor to the set whose motion leaves least of it, until none moves. Where only parts are admitted, sets that
     /// cannot be one go.
-    fn exchanged(&self, mut labels: Vec<usize>, only_parts: bool) -> Vec<usize> {
+    fn exchanged(&self, mut sets: Vec<Set>, only_parts: bool) -> Vec<Set> {
         for _ in 0..EXCHANGES {
-            let fits = fits(&self.roots, &labels);
-            let mut sizes: Vec<usize> = fits.iter().map(|fit| fit.loadings.len()).collect();
+            let mut sizes: Vec<usize> = sets.iter().map(|set| set.sample.len()).collect();
             sizes.sort_unstable();
             let small = sizes[sizes.len() / 2].div_ceil(2);
-            let can_be = |fit: &&Fit| {
-                let is_skin = fit.components >= LEAST_COMPONENTS || fit.loadings.len() >= small;
-                fit.spare >= SUPPORT && is_skin
+            let can_be = |set: &&Set| {
+                let is_skin = set.fit.components() >= LEAST_COMPONENTS || set.sample.len() >= small;
+                set.fit.spare >= SUPPORT && is_skin
             };
-            let parts: Vec<&Fit> = fits.iter().filter(can_be).collect();
-            let kept = if only_parts && !parts.is_empty() { parts } else { fits.iter().collect() };
-            let best = |sensor: usize| {
-                let left = kept.iter().map(|fit| self.roots.left(sensor, &fit.motions, fit.components));
-                least(left).map_or(0, |(part, _)| part)
-            };
-            let moved = named_by_appearance(&(0..labels.len()).into_par_iter().map(best).collect::<Vec<_>>());
-            if moved == labels {
+            let parts: Vec<&Set> = sets.iter().filter(can_be).collect();
+            let kept = if only_parts && !parts.is_empty() { parts } else { sets.iter().collect() };
+            let left: Vec<Vec<f64>> = kept.par_iter().map(|set| self.roots.left(&set.fit)).collect();
+            let best =
+                |sensor: usize| least(left.iter().map(|left| left[sensor])).map_or(0, |(part, _)| part);
+            let labels: Vec<usize> = (0..self.roots.sensors()).map(best).collect();
+            let moved = named_by_appearance(&labels);
+            if moved == labels_of(&sets) {
                 break;
             }
-            labels = moved;
+            sets = self.sets(members(&moved), sets);
         }
-        labels
+        sets
     }
-}
-
-/// The motion of some sensors, with the number of components, in a range, that makes it cost least.
-fn best_fit(roots: &Roots, sensors: &[usize], least: usize, most: usize) -> (f64, Fit) {
-    let own: Vec<usize> = spread(sensors.len(), MAX_SENSORS).map(|at| sensors[at]).collect();
-    let roots = roots.select(&own);
-    let (start, most) = (roots.start(), most.min(MAX_COMPONENTS).min(own.len()));
-    let try_with = |k: usize| {
-        let fit = roots.fit(&start, k, ROUNDS);
-        (cost(&fit, sensors.len()), fit)
-    };
-    // Costs fall with the number of components, and then rise; one step up may be a start that was not good.
-    let mut best = try_with(least.min(most));
-    let mut worse = 0;
-    for k in best.1.components + 1..=most {
-        let next = try_with(k);
-        if next.0 < best.0 {
-            (best, worse) = (next, 0);
-        } else {
-            worse += 1;
-        }
-        if worse == 2 {
-            break;
-        }
-    }
-    best
-}
-
-/// The motion of each set.
-fn fits(roots: &Roots, labels: &[usize]) -> Vec<Fit> {
-    members(labels).into_par_iter().map(|own| best_fit(roots, &own, 1, MAX_COMPONENTS).1).collect()
-}
-
-/// What it takes to tell what a set of sensors feels, for each time, in nats; see the head of this file.
-fn cost(fit: &Fit, sensors: usize) -> f64 {
-    let times = fit.motions.len() as f64;
-    let k = fit.components as f64;
-    // The fit may be of a share of the sensors only.
-    let ratio = sensors as f64 / fit.loadings.len() as f64;
-    let outer = |w: &Column| w * w.transpose();
-    let mut scatter: SMatrix<f64, MAX_COMPONENTS, MAX_COMPONENTS> = fit.motions.iter().map(outer).sum();
-    // Half of the sensors feel a motion, the others its opposite; with signs, all feel it, which adds a constant.
-    scatter *= ratio / (2.0 * times * TOLERANCE);
-    let components: f64 =
-        scatter.symmetric_eigenvalues().iter().map(|variance| variance.max(0.0).ln_1p()).sum();
-    let excess = if fit.spare > 0.0 { (fit.residual / fit.spare / TOLERANCE).max(1.0).ln() } else { 0.0 };
-    0.5 * (components + ratio * fit.spare * excess + sensors as f64 * k * times.ln() / times)
 }
 
 /// The sensors of each set.
@@ -351,21 +281,30 @@ fn members(labels: &[usize]) -> Vec<Vec<usize>> {
     members
 }
 
+/// The set of each sensor, by appearance.
+fn labels_of(sets: &[Set]) -> Vec<usize> {
+    let mut labels = vec![0; sets.iter().map(|set| set.sensors.len()).sum()];
+    for (at, set) in sets.iter().enumerate() {
+        set.sensors.iter().for_each(|&sensor| labels[sensor] = at);
+    }
+    named_by_appearance(&labels)
+}
+
 /// The first of the smallest numbers.
 fn least(values: impl Iterator<Item = f64>) -> Option<(usize, f64)> {
     values.enumerate().reduce(|best, other| if other.1 < best.1 { other } else { best })
 }
 
 /// The part of all sensors, from those of some, by the motions of their parts.
-fn assigned(some: &Roots, labels: &[usize], all: &Roots) -> RigidParts {
-    let fits = fits(some, labels);
+fn assigned(parts: &[Set], all: &Roots) -> RigidParts {
+    let left: Vec<Vec<f64>> = parts.par_iter().map(|part| all.left(&part.fit)).collect();
     let ranked = |sensor: usize| {
-        let left = |(part, fit): (usize, &Fit)| (all.left(sensor, &fit.motions, fit.components), part);
-        let mut shares: Vec<(f64, usize)> = fits.iter().enumerate().map(left).collect();
+        let mut shares: Vec<(f64, usize)> =
+            left.iter().enumerate().map(|(part, left)| (left[sensor], part)).collect();
         shares.sort_by(|a, b| a.0.total_cmp(&b.0));
         (shares[0], shares.get(1).copied())
     };
-    let ranked: Vec<_> = (0..all.sensors()).into_par_iter().map(ranked).collect();
+    let ranked: Vec<_> = (0..all.sensors()).map(ranked).collect();
     let found: Vec<usize> = ranked.iter().map(|(own, _)| own.1).collect();
     let labels = named_by_appearance(&found);
     let names: BTreeMap<usize, usize> = found.iter().copied().zip(labels.iter().copied()).collect();
@@ -377,5 +316,6 @@ fn assigned(some: &Roots, labels: &[usize], all: &Roots) -> RigidParts {
     }
 }
 
+mod set;
 #[cfg(test)]
 mod tests;
