@@ -69,12 +69,16 @@ pub mod internals {
     pub use crate::numerics::log_sum::log_sum;
     pub use crate::report::{markdown, page, plot};
 
+    /// The revision of the repository that the program was built from.
+    pub const REVISION: &str = env!("BODYSCHEMA_REVISION");
+
     /// Steps of a sweep, which are compared with a second reading one by one.
     pub mod sampler {
         pub use crate::stages::mixture::assignments::draw_labels;
         pub use crate::stages::schema::components::Components;
         pub use crate::stages::schema::joints::{cost, draw_between};
         pub use crate::stages::schema::latent_tree::{Joint, LatentTree, Update, tree};
+        pub use crate::stages::schema::split_merge::graph;
         pub use crate::stages::schema::weighted_trees::WeightedGraph;
     }
 }

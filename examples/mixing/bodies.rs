@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use bodyschema::files::tables::write_rows;
 use bodyschema::internals::markdown::{row, rule};
-use bodyschema::internals::statistics::{Estimate, mean};
+use bodyschema::internals::statistics::{Estimate, mean, wilson};
 use bodyschema::internals::{Posterior, consensus};
 use bodyschema::pipeline::{Body, feel, map_felt};
 use bodyschema::settings::Settings;
@@ -49,6 +49,7 @@ struct PosteriorRow {
     tree_probability: f64,
     worst_r_hat: Option<f64>,
     least_ess: Option<f64>,
+    mixed: bool,
 }
 
 /// A dimension.
@@ -128,6 +129,7 @@ fn infer_all(
         tree_probability: posterior.tree.as_ref().map_or(1.0, |tree| tree.probability),
         worst_r_hat: mixing().filter_map(|mixing| mixing.r_hat).reduce(f64::max),
         least_ess: mixing().filter_map(|mixing| mixing.ess).reduce(f64::min),
+        mixed: posterior.unmixed().is_none(),
     });
     if number == 1 {
         // One chain, on a thread of its own.
@@ -145,8 +147,8 @@ fn page(conditions: &[Condition], chains: usize) -> String {
         format!(
             "{BODIES} bodies as in the default (seed {SEED}), maps of the distances, {chains} chains each that start apart: from one \
              part, from k-means, and from labels at random. What a chain says is the consensus of the later half of its draws. \
-             The share of chains that have exactly the true parts, every sensor of them, after so many sweeps; intervals over \
-             bodies. [All chains](bodies-chains.csv).\n"
+             The share of chains that have exactly the true parts, every sensor of them, after so many sweeps; intervals are \
+             Wilson's of {BODIES} trials, the bodies. [All chains](bodies-chains.csv).\n"
         ),
     ];
     let sweeps = SWEEPS.map(|sweeps| format!("{sweeps} sweeps"));
@@ -164,8 +166,9 @@ fn page(conditions: &[Condition], chains: usize) -> String {
         row(head.into_iter().chain(SWEEPS.map(|sweeps| percent(&condition.exact_after(sweeps)))))
     }));
     lines.push(format!(
-        "\nWhat all chains of a body say together, from sweep {} on. Mixed: R̂ up to 1.01 and an effective sample size from \
-         400. [All bodies](bodies-posterior.csv).\n",
+        "\nWhat all chains of a body say together, from sweep {} on. Mixed: `infer` would not warn. The probability is what \
+         the posterior gives its likeliest tree, right or wrong, on the mean of the bodies whose consensus is exact; a sweep was \
+         timed on body 1. [All bodies](bodies-posterior.csv).\n",
         SWEEPS[SWEEPS.len() - 1] / 2 + 1
     ));
     lines.push(row([
@@ -173,7 +176,7 @@ fn page(conditions: &[Condition], chains: usize) -> String {
         "consensus exact",
         "mean ARI",
         "tree right, of those",
-        "mean probability of that tree",
+        "mean probability of the likeliest tree",
         "mixed",
     ]));
     lines.push(rule(6));
@@ -189,16 +192,15 @@ impl Condition {
                 self.chains.iter().filter(|row| row.body == body && row.sweeps == sweeps).collect();
             own.iter().filter(|row| row.exact).count() as f64 / own.len() as f64
         };
-        mean(&(1..=BODIES).map(of_body).collect::<Vec<_>>())
+        let share = (1..=BODIES).map(of_body).sum::<f64>() / BODIES as f64;
+        // As if the chains of a body were all right or all wrong, which is the widest. At the ends it has a width, too.
+        let interval = Some(wilson(share * BODIES as f64, BODIES as f64));
+        Estimate { value: Some(share), n: BODIES, interval, ..Estimate::default() }
     }
 
     fn posterior_row(&self) -> String {
         let exact: Vec<_> = self.posteriors.iter().filter(|row| row.exact).collect();
         let right = exact.iter().filter(|row| row.tree_right).count();
-        let is_mixed = |row: &&PosteriorRow| {
-            row.worst_r_hat.is_some_and(|r_hat| r_hat <= 1.01)
-                && row.least_ess.is_some_and(|ess| ess >= 400.0)
-        };
         let aris: Vec<f64> = self.posteriors.iter().map(|row| row.ari).collect();
         let probabilities: Vec<f64> = exact.iter().map(|row| row.tree_probability).collect();
         row([
@@ -207,7 +209,7 @@ impl Condition {
             mean(&aris).value.map_or("–".to_owned(), |ari| format!("{ari:.3}")),
             format!("{right} of {}", exact.len()),
             mean(&probabilities).value.map_or("–".to_owned(), |p| format!("{:.0} %", 100.0 * p)),
-            format!("{} of {BODIES}", self.posteriors.iter().filter(is_mixed).count()),
+            format!("{} of {BODIES}", self.posteriors.iter().filter(|row| row.mixed).count()),
         ])
     }
 }

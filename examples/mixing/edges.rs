@@ -6,13 +6,13 @@ use std::path::Path;
 use bodyschema::files::tables::write_rows;
 use bodyschema::internals::Posterior;
 use bodyschema::internals::markdown::{row, rule};
-use bodyschema::internals::sampler::{WeightedGraph, draw_between};
+use bodyschema::internals::sampler::{self, WeightedGraph, draw_between};
 use bodyschema::internals::statistics::mean;
 use bodyschema::numerics::rng::{Stream, stream};
 use bodyschema::stages::body_map::BodyMap;
 use bodyschema::stages::evaluate::adjusted_rand_index;
 use bodyschema::stages::mixture::{Gaussian, NormalInverseWishart, Rounding, SufficientStatistics};
-use bodyschema::stages::schema::{Model, Prior, Schema, TreePosterior, collapsed_cost, infer, tree_over};
+use bodyschema::stages::schema::{Model, Prior, Schema, TreePosterior, infer, tree_over};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
@@ -106,7 +106,7 @@ pub fn study(folder: &Path) -> Result<String, Box<dyn Error>> {
     picture::reliability(&folder.join("figures/edges.svg"), &panels)?;
     lines.push("\n![How often an edge is there, against its probability](figures/edges.svg)\n".to_owned());
     lines.push(
-        "Each point: the pairs of all d whose probability lies in a tenth, with the interval over bodies.\n"
+        "Each point: the pairs of all d whose probability lies in a tenth, with the interval over bodies; none of a single body.\n"
             .to_owned(),
     );
     Ok(lines.join("\n"))
@@ -154,7 +154,7 @@ fn draw_body(dims: usize, rng: &mut Stream) -> Result<Drawn, Rounding> {
 /// The weights of all trees over some Gaussians.
 pub fn graph(gaussians: &[Gaussian]) -> Result<WeightedGraph, Rounding> {
     let moments: Vec<_> = gaussians.iter().map(Gaussian::moments).collect();
-    WeightedGraph::new(gaussians.len(), |i, j| Ok(-collapsed_cost(&moments[i], &moments[j])?))
+    sampler::graph(&moments.iter().collect::<Vec<_>>())
 }
 
 /// The pairs of parts of a body, with the true parts and, if they are found, with those that are found.
@@ -250,8 +250,9 @@ fn bins<'a>(pairs: impl Iterator<Item = &'a Pair>) -> Vec<picture::Bin> {
         let surplus = of_bodies(pairs, |pair| f64::from(u8::from(pair.there)) - pair.probability);
         let estimate = mean(&surplus);
         let scale = surplus.len() as f64 / count;
-        let half = estimate.interval.map(|(low, high)| (high - low) / 2.0 * scale)?;
-        Some(picture::Bin { predicted, observed, half, pairs: pairs.len() })
+        // One body has no interval.
+        let half = estimate.interval.map_or(0.0, |(low, high)| (high - low) / 2.0 * scale);
+        picture::Bin { predicted, observed, half, pairs: pairs.len() }
     };
-    own.iter().filter(|pairs| !pairs.is_empty()).filter_map(bin).collect()
+    own.iter().filter(|pairs| !pairs.is_empty()).map(bin).collect()
 }

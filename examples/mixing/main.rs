@@ -29,10 +29,12 @@ fn main() -> Result<(), Box<dyn Error>> {
     std::fs::create_dir_all(folder.join("figures"))?;
     let page = [
         "# How the split–merge sampler mixes\n".to_owned(),
-        "`bodyschema infer --sampler split-merge` ([split-merge.md](docs/split-merge.md)), measured by `reproduce/mixing.sh`. All \
-         tables are the same on machines of one kind but for seconds, which are those of one core of the machine that wrote \
-         this page.\n"
-            .to_owned(),
+        format!(
+            "`bodyschema infer --sampler split-merge` ([split-merge.md](docs/split-merge.md)), measured by `reproduce/mixing.sh` at \
+             revision {}. All tables are the same on machines of one kind but for seconds, which are those of one core of the \
+             machine that wrote this page, beside whatever else it did.\n",
+            bodyschema::internals::REVISION
+        ),
         bodies::study(folder)?,
         traces::study(folder)?,
         edges::study(folder)?,

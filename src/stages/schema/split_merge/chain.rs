@@ -309,7 +309,7 @@ impl<'a> SplitMerge<'a> {
     /// # Errors
     /// As for [`Self::start`].
     pub fn graph(&self) -> Result<WeightedGraph, Rounding> {
-        graph(&self.clusters.iter().collect::<Vec<_>>())
+        graph(&self.clusters.iter().map(|cluster| &cluster.moments).collect::<Vec<_>>())
     }
 
     /// The labels of all points but one of each cluster, given weights π of the clusters that there are (Chang and Fisher

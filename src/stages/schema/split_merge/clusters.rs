@@ -21,7 +21,7 @@ pub struct Cluster {
     /// (μ, Σ).
     gaussian: Gaussian,
     /// The same, as the weights of edges need it.
-    moments: Augmented,
+    pub moments: Augmented,
 }
 
 impl Cluster {
@@ -63,14 +63,12 @@ impl Cluster {
     }
 }
 
-/// The weights of all trees over some clusters: N(μ_s; μ_c, Σ_s + Σ_c) for each edge, joints integrated out.
+/// The weights of all trees over some Gaussians: N(μ_s; μ_c, Σ_s + Σ_c) for each edge, joints integrated out.
 ///
 /// # Errors
 /// [`Rounding`].
-pub fn graph(clusters: &[&Cluster]) -> Result<WeightedGraph, Rounding> {
-    WeightedGraph::new(clusters.len(), |i, j| {
-        Ok(-collapsed_cost(&clusters[i].moments, &clusters[j].moments)?)
-    })
+pub fn graph(moments: &[&Augmented]) -> Result<WeightedGraph, Rounding> {
+    WeightedGraph::new(moments.len(), |i, j| Ok(-collapsed_cost(moments[i], moments[j])?))
 }
 
 /// log of the mean over all trees of ∏ N(μ_s; μ_c, Σ_s + Σ_c): the factor of the latent joints under a uniform prior over
@@ -83,5 +81,6 @@ pub fn log_joints(model: Model, clusters: &[&Cluster]) -> Result<f64, Rounding> 
         return Ok(0.0);
     }
     let count = clusters.len() as f64;
-    Ok(graph(clusters)?.log_sum() - (count - 2.0) * count.ln())
+    let moments: Vec<&Augmented> = clusters.iter().map(|cluster| &cluster.moments).collect();
+    Ok(graph(&moments)?.log_sum() - (count - 2.0) * count.ln())
 }

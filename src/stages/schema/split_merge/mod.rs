@@ -9,5 +9,6 @@ mod edges;
 mod neighbours;
 
 pub use self::chain::{SplitMerge, Target};
+pub use self::clusters::graph;
 pub use self::edges::{TreePosterior, tree_given};
 pub use self::neighbours::Neighbours;
