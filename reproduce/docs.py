@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 """Put the results of finished runs into the repository: reproduce/docs.py [RESULTS]
 
-RESULTS is the folder that holds exp1, exp2, search, sensitivity, ablation, step, multiverse and mixing (default:
-results/). It updates
+RESULTS is the folder that holds exp1, exp2, search, sensitivity, ablation, step, multiverse, multiverse-held-out, mixing and
+bodies (default: results/). It updates
 
 - README.md: the table between <!-- claims --> and <!-- /claims -->, from claims.csv of both experiments;
 - docs/results.md: the tables of both experiments, from their claims.md;
 - docs/shown/: two figures, and the tables and pictures of the studies;
-- docs/sensitivity.md, ablation.md, step.md, multiverse.md and mixing.md: the pages of the studies;
+- docs/sensitivity.md, ablation.md, step.md, multiverse.md, mixing.md and bodies.md: the pages of the studies;
 - DEVIATIONS.md: the table of open settings, from paper.toml, sensitivity.toml and the search that is
   shown. It needs no run.
 
@@ -15,6 +15,7 @@ What RESULTS does not hold is skipped, with a line on standard error. Needs Pyth
 """
 
 import csv
+import gzip
 import json
 import pathlib
 import re
@@ -40,7 +41,8 @@ UNITS = ["kg/m^3", "N m s/rad", "N m/rad", "m", "s"]
 
 def main():
     results = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "results"
-    for step in [claims, experiment_1, experiment_2, search, sensitivity, ablation, half_step, multiverse, mixing]:
+    studies = [search, sensitivity, ablation, half_step, multiverse, held_out, mixing, bodies]
+    for step in [claims, experiment_1, experiment_2, *studies]:
         try:
             step(results)
         except FileNotFoundError as missing:
@@ -181,6 +183,56 @@ def half_step(results):
 def multiverse(results):
     tables = ["multiverse.csv", "specifications.csv", "shares.csv", "variance.csv", "joint.csv"]
     study(results / "multiverse", "multiverse.md", tables)
+    # Over a megabyte, and nearly all of it again and again the same.
+    page = ROOT / "docs" / "multiverse.md"
+    for table in tables[:2]:
+        plain = SHOWN / "multiverse" / table
+        plain.with_name(f"{table}.gz").write_bytes(gzip.compress(plain.read_bytes(), mtime=0))
+        plain.unlink()
+        page.write_text(page.read_text().replace(f"/{table})", f"/{table}.gz)"))
+
+
+def held_out(results):
+    """The section of docs/multiverse.md on the multiverse of another seed."""
+    manifest(results / "multiverse-held-out")
+    own, other = (read_shares(results / name) for name in ["multiverse", "multiverse-held-out"])
+    rows = [
+        "## Another seed\n",
+        "The same design with other bodies, movements and specifications (`reproduce/multiverse-held-out.sh`): all "
+        f"{other['all', 'tree-accuracy']['n']} of them. Within: whether that share lies in the interval of the large "
+        "multiverse. [Its shares](shown/multiverse-held-out/shares.csv).\n",
+        "| claim | share | of the other seed | within |",
+        "|---|---|---|---|",
+    ]
+    within = 0
+    for (group, claim), share in own.items():
+        if group == "all":
+            inside = float(share["low"]) <= float(other[group, claim]["share"]) <= float(share["high"])
+            within += inside
+            cells = [claim, percent(share), percent(other[group, claim]), "yes" if inside else "no"]
+            rows.append(f"| {' | '.join(cells)} |")
+    count = len(rows) - 4
+    rows.append(f"\n{within} of {count} shares lie within.\n")
+    copy([results / "multiverse-held-out" / "shares.csv"], SHOWN / "multiverse-held-out")
+    page = ROOT / "docs" / "multiverse.md"
+    text = re.sub(r"## Another seed\n.*?(?=## The choices\n)", "", page.read_text(), flags=re.S)
+    before, choices = text.split("## The choices\n")
+    section = "\n".join(rows)
+    page.write_text(f"{before}{section}\n## The choices\n{choices}")
+
+
+def read_shares(folder):
+    with open(folder / "shares.csv", newline="") as file:
+        return {(row["group"], row["claim"]): row for row in csv.DictReader(file)}
+
+
+def percent(share):
+    value, low, high = (f"{100 * float(share[key]):.1f}" for key in ["share", "low", "high"])
+    return f"{value} % ({low} to {high})"
+
+
+def bodies(results):
+    study(results / "bodies", "bodies.md", ["recordings.csv", "edges.csv"])
 
 
 def mixing(results):

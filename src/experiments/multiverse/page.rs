@@ -7,6 +7,7 @@ use super::evaluation::{Evaluation, ShareRow, TOGETHER, VarianceRow};
 use crate::analysis::published::{HEADLINE, Unit};
 use crate::report::markdown::{row, rule};
 use crate::report::numbers;
+use crate::report::plot::specifications::{Curve, Point};
 
 /// Sources of variance that are shown of a claim.
 const SHOWN: usize = 4;
@@ -18,7 +19,8 @@ pub fn page(evaluation: &Evaluation) -> String {
     lines.push(made(evaluation));
     lines.push("\n## In what share does each claim hold?\n".to_owned());
     lines.push(
-        "A claim holds in a specification if its value is within the accepted range; without a value it does not hold. \
+        "A claim holds in a specification if its value is within the accepted range; without a value it does not hold, and how \
+         many have one stands beside. \
          Intervals are 95 % intervals over resamples of the movements, with which go their bodies, and of the \
          specifications of each. All numbers: [shares.csv](shares.csv).\n"
             .to_owned(),
@@ -64,6 +66,7 @@ fn answer(evaluation: &Evaluation) -> String {
         of("resolved", HEADLINE),
         of("all", TOGETHER),
     );
+    words += &values(evaluation);
     let headline = evaluation.variance.iter().filter(|row| row.claim == HEADLINE && row.with.is_empty());
     let mut sources: Vec<&VarianceRow> = headline.filter(|row| row.share.is_some()).collect();
     sources.sort_by(|a, b| b.share.unwrap_or_default().total_cmp(&a.share.unwrap_or_default()));
@@ -93,6 +96,27 @@ fn answer(evaluation: &Evaluation) -> String {
     words
 }
 
+/// How many specifications have a value of the headline, and where these lie.
+fn values(evaluation: &Evaluation) -> String {
+    let Some(at) = evaluation.design.claims.iter().position(|compared| compared.id == HEADLINE) else {
+        return String::new();
+    };
+    let Curve { points, accepted: (low, high), published, .. } = evaluation.curve(at);
+    let count = |holds: &dyn Fn(&Point) -> bool| points.iter().filter(|point| holds(point)).count();
+    let reach = published.map_or(0, |published| {
+        count(&|point| point.interval.is_some_and(|(low, high)| (low..=high).contains(&published)))
+    });
+    format!(
+        " {} have no eligible draw to judge the tree accuracy by. Of the other {}, {} lie below the range ({} at 0 %) and {} above; the \
+         intervals of {reach} reach the published number.",
+        evaluation.all.len() - points.len(),
+        points.len(),
+        count(&|point| point.value < low),
+        count(&|point| point.value == 0.0),
+        count(&|point| point.value > high),
+    )
+}
+
 fn in_words(row: &ShareRow) -> String {
     with_ends(row.share, row.low.zip(row.high), " (", ")")
 }
@@ -120,7 +144,7 @@ fn made(evaluation: &Evaluation) -> String {
          Sobol sequence; {}. Any specification can be run again by its number: its settings are in \
          specifications/NUMBER/settings.toml, and `bodyschema multiverse --only NUMBER` makes that folder. All values: \
          [multiverse.csv](multiverse.csv); what each specification is: [specifications.csv](specifications.csv).",
-        env!("BODYSCHEMA_REVISION"),
+        evaluation.all[0].summary.revision,
         flat(settings).join(", ")
     )
 }
@@ -130,8 +154,8 @@ fn shares(evaluation: &Evaluation) -> Vec<String> {
     let groups: Vec<(String, usize)> =
         evaluation.groups().into_iter().map(|(name, members)| (name, members.len())).collect();
     let header = groups.iter().map(|(name, n)| format!("{name} (n = {n})"));
-    let header = ["claim".to_owned(), "accepted".to_owned()].into_iter().chain(header);
-    let mut lines = vec![row(header), rule(groups.len() + 2)];
+    let header = ["claim", "accepted", "with a value"].map(str::to_owned).into_iter().chain(header);
+    let mut lines = vec![row(header), rule(groups.len() + 3)];
     let claims = evaluation.design.claims.iter().zip(&evaluation.claims);
     let named = claims.map(|(compared, claim)| {
         let accepted = numbers::range(claim.accept, claim.measure.unit());
@@ -142,7 +166,9 @@ fn shares(evaluation: &Evaluation) -> Vec<String> {
             let found = evaluation.shares.iter().find(|row| row.group == *group && row.claim == id);
             found.map_or("–".to_owned(), in_words)
         });
-        lines.push(row([label, accepted].into_iter().chain(cells)));
+        let all = evaluation.shares.iter().find(|row| row.group == groups[0].0 && row.claim == id);
+        let with_value = all.map_or(0, |row| row.with_value).to_string();
+        lines.push(row([label, accepted, with_value].into_iter().chain(cells)));
     }
     lines
 }

@@ -2,8 +2,9 @@
 //!
 //! In: pressures, and the distances between sensors. Out: the [part](RigidParts) of each sensor. The number of parts is found,
 //! too. Neighbours in the distances make small pieces, which nearly always are pieces of one part. Then, in turns, two sets of
-//! sensors become one where that [costs](set::Set::cost) least, and each sensor goes to the set whose motion leaves least of it. A part
-//! that one motion does not explain at the times that tell most of it is looked at anew, by itself.
+//! sensors become one where that [costs](Set::cost) least, and each sensor goes to the set whose motion leaves least of it. What
+//! comes of this hangs on the pieces, so there are several starts, and the sets that cost least are kept. A part that one
+//! motion does not explain at the times that tell most of it is looked at anew, by itself.
 
 use std::collections::BTreeMap;
 
@@ -18,10 +19,10 @@ use crate::numerics::partition::named_by_appearance;
 use crate::stages::distance::Distances;
 use crate::stages::sense::Tactile;
 
-/// Sensors of a piece, on the mean.
-const PIECE: usize = 6;
+/// Sensors of a piece, on the mean: of each start.
+const PIECES: [usize; 3] = [6, 9, 12];
 /// Fewest sensors of which several parts can be found: two pieces.
-pub const MIN_SENSORS: usize = 2 * PIECE;
+pub const MIN_SENSORS: usize = 2 * PIECES[0];
 /// Most pieces.
 const MAX_PIECES: usize = 100;
 /// Times that are read: for the many pieces, and for the few parts.
@@ -107,19 +108,26 @@ impl Body<'_> {
         })
     }
 
-    /// The parts of some sensors, from pieces.
+    /// The parts of some sensors, from pieces: of all starts, those that cost least.
     fn parts_of(&self, sensors: &[usize], times: &[Vec<usize>; 2]) -> Vec<usize> {
         let n = sensors.len();
         let values = sensors.iter().flat_map(|&i| sensors.iter().map(move |&j| self.distances.get(i, j)));
         let distances = &Distances { sensors: n, values: values.collect() };
-        let pieces = (n / PIECE).clamp(1, MAX_PIECES);
-        let labels = linkage::clusters(n, |i, j| distances.get(i, j), Method::Average, pieces);
-        let coarse = Search { roots: self.roots(sensors, &times[0]), distances };
-        let sets = coarse.sets(members(&labels), Vec::new());
-        let sets = coarse.exchanged(coarse.merged(sets, NEAR[0], 0.0), false);
-        let labels = labels_of(&coarse.settled(sets, usize::MAX));
-        let fine = Search { roots: self.roots(sensors, &times[1]), distances };
-        labels_of(&fine.settled(fine.sets(members(&labels), Vec::new()), NEAR[1]))
+        let [coarse, fine] =
+            [&times[0], &times[1]].map(|times| Search { roots: self.roots(sensors, times), distances });
+        let found = |size: &usize| {
+            let pieces = (n / size).clamp(1, MAX_PIECES);
+            let labels = linkage::clusters(n, |i, j| distances.get(i, j), Method::Average, pieces);
+            let sets = coarse.sets(members(&labels), Vec::new());
+            let sets = coarse.exchanged(coarse.merged(sets, NEAR[0], 0.0), false);
+            let labels = labels_of(&coarse.settled(sets, usize::MAX));
+            let sets = fine.settled(fine.sets(members(&labels), Vec::new()), NEAR[1]);
+            (sets.iter().map(|set| set.cost).sum::<f64>(), labels_of(&sets))
+        };
+        let starts: Vec<(f64, Vec<usize>)> = PIECES.par_iter().map(found).collect();
+        // The first of the best. The cost, not the number of parts, tells: with one motion for two parts much is left.
+        let best = starts.into_iter().reduce(|best, other| if other.0 < best.0 { other } else { best });
+        best.expect("there are starts").1
     }
 
     /// Takes parts apart, and what comes of them, where one motion does not explain what is felt at the times that tell most of
