@@ -70,7 +70,7 @@ pub fn rigid_parts(tactile: &Tactile, sensors: &[usize], distances: &Distances) 
     let body = Body { series: some, signed, distances };
     let every: Vec<usize> = (0..sensors.len()).collect();
     let times = body.telling_times(&every);
-    let found = body.parts_of(&every, &times);
+    let found = body.parts_of(&every, &times, &PIECES);
     let labels = body.taken_apart(found.clone());
     let fine = Search { roots: body.roots(&every, &times[1]), distances };
     let sets = fine.sets(members(&labels), Vec::new());
@@ -108,23 +108,23 @@ impl Body<'_> {
         })
     }
 
-    /// The parts of some sensors, from pieces: of all starts, those that cost least.
-    fn parts_of(&self, sensors: &[usize], times: &[Vec<usize>; 2]) -> Vec<usize> {
+    /// The parts of some sensors, from pieces of these sizes: of all starts, those that cost least.
+    fn parts_of(&self, sensors: &[usize], times: &[Vec<usize>; 2], pieces: &[usize]) -> Vec<usize> {
         let n = sensors.len();
         let values = sensors.iter().flat_map(|&i| sensors.iter().map(move |&j| self.distances.get(i, j)));
         let distances = &Distances { sensors: n, values: values.collect() };
         let [coarse, fine] =
             [&times[0], &times[1]].map(|times| Search { roots: self.roots(sensors, times), distances });
         let found = |size: &usize| {
-            let pieces = (n / size).clamp(1, MAX_PIECES);
-            let labels = linkage::clusters(n, |i, j| distances.get(i, j), Method::Average, pieces);
+            let count = (n / size).clamp(1, MAX_PIECES);
+            let labels = linkage::clusters(n, |i, j| distances.get(i, j), Method::Average, count);
             let sets = coarse.sets(members(&labels), Vec::new());
             let sets = coarse.exchanged(coarse.merged(sets, NEAR[0], 0.0), false);
             let labels = labels_of(&coarse.settled(sets, usize::MAX));
             let sets = fine.settled(fine.sets(members(&labels), Vec::new()), NEAR[1]);
             (sets.iter().map(|set| set.cost).sum::<f64>(), labels_of(&sets))
         };
-        let starts: Vec<(f64, Vec<usize>)> = PIECES.par_iter().map(found).collect();
+        let starts: Vec<(f64, Vec<usize>)> = pieces.par_iter().map(found).collect();
         // The first of the best. The cost, not the number of parts, tells: with one motion for two parts much is left.
         let best = starts.into_iter().reduce(|best, other| if other.0 < best.0 { other } else { best });
         best.expect("there are starts").1
@@ -160,7 +160,8 @@ impl Body<'_> {
         if whole.fit.residual <= UNEXPLAINED * whole.fit.spare {
             return None;
         }
-        let labels = self.parts_of(part, &times);
+        // One start: from more, sensors that are on the end of a part become one of their own.
+        let labels = self.parts_of(part, &times, &PIECES[..1]);
         let parts = members(&labels);
         let count = parts.len();
         let sum: f64 = parts.into_iter().map(|own| set(&roots, own).cost).sum();
