@@ -1,5 +1,6 @@
 //! `bodyschema body import` as a user meets it: descriptions of both kinds, and mistakes.
 
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
@@ -93,6 +94,13 @@ fn a_mistake_is_one_line_and_leaves_no_file() {
         assert_eq!((told.lines().count(), output.stdout.len()), (1, 0), "{name}: {told}");
         assert!(!out.exists(), "{name}");
     }
+    // The description itself is not written over.
+    let robot = folder.path().join("arm.xml");
+    fs::copy(data("arm.xml"), &robot).unwrap();
+    let output = import(&robot, &[], &robot);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(String::from_utf8(output.stderr).unwrap().contains("is the file that is read"));
+    assert_eq!(fs::read(&robot).unwrap(), fs::read(data("arm.xml")).unwrap());
     let both = import(&data("arm.xml"), &["--per-area", "9", "--sensors-per-part", "9"], &out);
     assert_eq!(both.status.code(), Some(2));
     assert!(!out.exists());

@@ -1,9 +1,9 @@
 //! The subcommand body, and within it import.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use anyhow::Result;
+use anyhow::{Result, ensure};
 use clap::{Args, Subcommand};
 
 use super::output::say;
@@ -63,6 +63,9 @@ impl Import {
                 SkinEntry { sensors: Some(count.map_or(SENSORS, |count| count as usize)), per_area: None }
             }
         };
+        let same =
+            |a: &Path, b: &Path| matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b);
+        ensure!(!same(robot, out), "{}: is the file that is read; give another --out", out.display());
         let Imported { file, notes } = import(robot, skin)?;
         let name = robot.file_name().unwrap_or_default();
         write_body(out, &format!("Imported from {name:?}."), &file)?;

@@ -81,7 +81,7 @@ impl Batch<'_> {
     }
 
     /// Runs one task after the other, each on all threads, up to the first with files that fails; the outcome of one
-    /// without files may be a failure. Of all but the first, only the files of the body are kept.
+    /// without files may be a failure.
     ///
     /// # Errors
     /// If a file cannot be written.
@@ -97,7 +97,7 @@ impl Batch<'_> {
                 // that differs.
                 let mut map =
                     || shared.map(&task.settings, task.simulation, &task.dimensions(), || ahead.movement(at));
-                let mut outcome = match self.try_to_finish(task, &mut map, progress) {
+                let outcome = match self.try_to_finish(task, &mut map, progress) {
                     Ok(found) => Ok(found),
                     Err(Stop::Failed(reason)) if task.keep == Keep::Nothing => Err(reason),
                     Err(Stop::Failed(reason)) => return Err(ExperimentError::Stage(reason)),
@@ -106,11 +106,6 @@ impl Batch<'_> {
                 progress.complete(task);
                 if !tasks.get(at + 1).is_some_and(|next| next.shares_movement(task)) {
                     shared = Shared::default();
-                }
-                if at > 0
-                    && let Ok(found) = &mut outcome
-                {
-                    (found.best, found.body) = (Vec::new(), None);
                 }
                 all.push(outcome);
             }

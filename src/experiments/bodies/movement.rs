@@ -24,6 +24,8 @@ pub struct Movement<'a> {
     pub design: &'a Design,
     /// The body.
     pub body: &'a StudyBody,
+    /// Its place in the design.
+    pub of_body: usize,
     /// The settings.
     pub settings: &'a Settings,
     /// Its number, from 1.
@@ -104,17 +106,17 @@ impl Movement<'_> {
     }
 
     /// A number that no other movement has, for its streams of random numbers.
-    fn simulation(&self, of_body: usize) -> usize {
-        of_body * self.design.movements + self.number
+    fn simulation(&self) -> usize {
+        (self.number - 1) * self.design.bodies.len() + self.of_body + 1
     }
 
     /// Simulates it, and estimates from each recording.
     ///
     /// # Errors
     /// If it is unstable; the message says at which body.
-    pub fn run(&self, of_body: usize, tick: &dyn Fn()) -> Result<Found, String> {
+    pub fn run(&self, tick: &dyn Fn()) -> Result<Found, String> {
         let Settings { motion, physics, sense: tactile, experiment, .. } = self.settings;
-        let (agent, simulation) = (&self.body.body.agent, self.simulation(of_body));
+        let (agent, simulation) = (&self.body.body.agent, self.simulation());
         let mut rng = stream(experiment.seed, simulation, "motion", 0);
         let moved = simulate(agent, motion, physics, tactile.interval, &mut rng, &|| ())
             .map_err(|error| format!("{}: {error}", self.name()))?;

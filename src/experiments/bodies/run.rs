@@ -21,6 +21,7 @@ use crate::files::result_folder::ResultFolder;
 /// # Errors
 /// If a body or the settings cannot be used, a movement is unstable, or a file cannot be written.
 pub fn study(design: &Design, text: &str, path: &Path, out: &Path) -> Result<(), ExperimentError> {
+    let mut folder = ResultFolder::new(out);
     let bodies = design.read_bodies(path)?;
     let settings = design
         .coordinations
@@ -32,19 +33,13 @@ pub fn study(design: &Design, text: &str, path: &Path, out: &Path) -> Result<(),
     {
         settings.check_times(body.body.agent.sites.len()).map_err(crate::settings::SettingsError::from)?;
     }
-    let checkpoints = Checkpoints::new(out, design);
-    let all: Vec<(usize, Movement)> = bodies
-        .iter()
-        .enumerate()
-        .flat_map(|(at, body)| settings.iter().map(move |settings| (at, body, settings)))
-        .flat_map(|(at, body, settings)| {
-            (1..=design.movements).map(move |number| (at, Movement { design, body, settings, number }))
-        })
-        .collect();
+    // What a movement gives does not hang on how many there are: a study of more goes on from what one of fewer left.
+    let checkpoints = Checkpoints::new(out, &Design { movements: 0, ..design.clone() });
     let each = design.recordings.len() as u64 + 1;
-    let bar = progress(each * all.len() as u64, format!("{} movements", all.len()));
+    let count = bodies.len() * settings.len() * design.movements;
+    let bar = progress(each * count as u64, format!("{count} movements"));
     let failed = AtomicBool::new(false);
-    let run = |(of_body, movement): &(usize, Movement)| -> Result<Found, ExperimentError> {
+    let run = |movement: &Movement| -> Result<Found, ExperimentError> {
         if let Some(found) = checkpoints.recall(&movement.name()) {
             bar.inc(each);
             return Ok(found);
@@ -52,18 +47,28 @@ pub fn study(design: &Design, text: &str, path: &Path, out: &Path) -> Result<(),
         if failed.load(Ordering::Relaxed) {
             return Err(ExperimentError::Stage("another movement failed".to_owned()));
         }
-        let found = movement.run(*of_body, &|| bar.inc(1)).map_err(|message| {
+        let found = movement.run(&|| bar.inc(1)).map_err(|message| {
             failed.store(true, Ordering::Relaxed);
             ExperimentError::Stage(message)
         })?;
         checkpoints.keep(&movement.name(), &found)?;
         Ok(found)
     };
-    let found: Vec<Found> = all.par_iter().map(run).collect::<Result<_, _>>()?;
+    let mut found: Vec<(usize, Found)> = Vec::new();
+    for number in 1..=design.movements {
+        let of_body = |(of_body, body)| {
+            settings.iter().map(move |settings| Movement { design, body, of_body, settings, number })
+        };
+        let movements: Vec<Movement> = bodies.iter().enumerate().flat_map(of_body).collect();
+        let results: Vec<Found> = movements.par_iter().map(run).collect::<Result<_, _>>()?;
+        found.extend(results.into_iter().enumerate());
+    }
     bar.finish_and_clear();
+    // By body, then by p, then by movement.
+    found.sort_by_key(|(place, _)| *place);
+    let found: Vec<Found> = found.into_iter().map(|(_, found)| found).collect();
     let rows: Vec<&Row> = found.iter().flat_map(|found| &found.rows).collect();
     let edges: Vec<&EdgeRow> = found.iter().flat_map(|found| &found.edges).collect();
-    let mut folder = ResultFolder::new(out);
     folder.write_rows("recordings.csv", &rows)?;
     folder.write_rows("edges.csv", &edges)?;
     folder.write_text("design.toml", text)?;
