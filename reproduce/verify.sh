@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Draws the body schema from the reference body maps of both experiments, and compares with the draws that stand
-# beside them: whether the inference does on this machine what it did where they were made. Takes half a minute
-# after the build. Status: 0 it does, 1 it does not, 2 on an error.
+# Moves a body for a short time, and draws the body schema from the reference body maps of both experiments, and compares with
+# what stands beside them: whether the physics engine and the inference do on this machine what they did where the references were
+# made. Takes half a minute after the build. Status: 0 they do, 1 they do not, 2 on an error.
 set -euo pipefail
 root=$(CDPATH= cd -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")/.." && pwd)
 manifest=(--release --locked --manifest-path "$root/Cargo.toml")
@@ -10,6 +10,10 @@ manifest=(--release --locked --manifest-path "$root/Cargo.toml")
 cargo build --quiet "${manifest[@]}" || exit 2
 
 status=0
+reference=$root/reproduce/reference/movement
+out=$root/results/verify/movement
+cargo run --quiet "${manifest[@]}" -- simulate --settings "$reference/settings.toml" --seed 3141 --out "$out"
+cargo run --quiet "${manifest[@]}" -- verify "$out" --against "$reference" || status=$?
 for experiment in exp1 exp2; do
     reference=$root/reproduce/reference/$experiment
     out=$root/results/verify/$experiment

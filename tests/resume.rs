@@ -64,7 +64,7 @@ impl Place {
     }
 }
 
-/// All files of a run but run.json, which tells runs apart.
+/// All files of a run but those that tell runs apart.
 fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     let mut files = BTreeMap::new();
     let mut folders = vec![folder.to_owned()];
@@ -73,7 +73,9 @@ fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
             let path = entry.unwrap().path();
             if path.is_dir() {
                 folders.push(path);
-            } else if path.file_name().unwrap() != "run.json" {
+            } else if !["run.json", "ro-crate-metadata.json"]
+                .contains(&path.file_name().unwrap().to_str().unwrap())
+            {
                 files.insert(path.strip_prefix(folder).unwrap().to_owned(), fs::read(&path).unwrap());
             }
         }

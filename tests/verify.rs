@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
-use bodyschema::files::npy;
+use bodyschema::files::{npy, sha256};
 
 /// Experiment 1 in a second or two.
 const SMALL: &str = "
@@ -60,6 +60,37 @@ fn a_finished_run_is_compared_with_its_manifest() {
     assert!(printed.contains("differs           samples.csv: its SHA-256 is not"), "{printed}");
     assert!(printed.contains("missing           simulation-1/body-map.npy\n"), "{printed}");
     assert!(printed.ends_with("0 within tolerance, 2 not\n"), "{printed}");
+
+    let described = Path::new(&run).join("ro-crate-metadata.json");
+    let text = fs::read_to_string(&described).unwrap();
+    let hash = sha256(&Path::new(&run).join("claims.csv")).unwrap();
+    let other = hash.chars().rev().collect::<String>();
+    for (content, status, expected) in [
+        (
+            text.replace(&hash, &other),
+            1,
+            "differs           ro-crate-metadata.json: states another SHA-256 of claims.csv",
+        ),
+        (
+            text.replace("\"claims.csv\"", "\"clams.csv\""),
+            1,
+            "a SHA-256 of clams.csv, which manifest.json does not list",
+        ),
+        (
+            text.replace("sha256\": ", "sha512\": "),
+            1,
+            "states no SHA-256 of simulation-1/labels.csv, which manifest",
+        ),
+        (text[..text.len() / 2].to_owned(), 2, "is not a crate of results"),
+    ] {
+        fs::write(&described, content).unwrap();
+        let (found, printed) = verify(&run);
+        assert!(found == status && printed.contains(expected), "{printed}");
+        assert_eq!(printed.lines().filter(|line| line.contains("ro-crate")).count(), 1, "{printed}");
+    }
+    // Results of programs before there were crates.
+    fs::remove_file(&described).unwrap();
+    assert!(verify(&run).1.ends_with("0 within tolerance, 2 not\n"));
 
     let manifest = Path::new(&run).join("manifest.json");
     let text = fs::read_to_string(&manifest).unwrap();
@@ -189,4 +220,25 @@ fn the_reference_body_maps_give_the_reference_draws() {
         let (status, printed) = verify(&format!("{out} --against {reference}/schema"));
         assert_eq!(status, 0, "{printed}");
     }
+}
+
+/// A movement that is too short for chaos, simulated by the C library's functions for newer and for older processors.
+#[test]
+fn the_reference_movement_is_repeated() {
+    let folder = tempfile::tempdir().unwrap();
+    let reference = format!("{}/reproduce/reference/movement", env!("CARGO_MANIFEST_DIR"));
+    let simulated = |name: &str, seed: u64, processor: &str| {
+        let out = folder.path().join(name).display().to_string();
+        let arguments = format!("simulate --settings {reference}/settings.toml --seed {seed} --out {out}");
+        let mut command = Command::new(env!("CARGO_BIN_EXE_bodyschema"));
+        let output = command.args(arguments.split(' ')).env("GLIBC_TUNABLES", processor).output().unwrap();
+        assert!(output.status.success(), "{output:?}");
+        verify(&format!("{out} --against {reference}"))
+    };
+    for (name, processor) in [("new", ""), ("old", "glibc.cpu.hwcaps=-AVX2,-FMA")] {
+        let (status, printed) = simulated(name, 3141, processor);
+        assert_eq!(status, 0, "{printed}");
+    }
+    let (status, printed) = simulated("other", 3142, "");
+    assert_eq!(status, 1, "{printed}");
 }

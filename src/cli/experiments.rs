@@ -88,7 +88,7 @@ impl Reproduce {
 /// Reads a design (reproduce/search.toml explains one) and writes into DIR: search.md (rounds, and which claims
 /// hold together), scores.csv (a row for each candidate and round), credits.csv (a row for each claim of the best
 /// candidates), best.toml (the settings of the best candidate, for --settings), next.toml (the candidates of the next
-/// round, for --from on another machine) and checkpoints/, from which a search that was stopped continues.
+/// round, for --from on another machine), design.toml and checkpoints/, from which a search that was stopped continues.
 #[derive(Args)]
 pub struct Search {
     /// Continue with the round and the candidates of this file, the next.toml of an earlier part of the search
@@ -112,7 +112,7 @@ impl Search {
             }
         };
         prepare_folder(out)?;
-        say(search::search(&design, from, out)?)?;
+        say(search::search(&design, &text, from, out)?)?;
         say(format!("All files are in {}.", out.display()))?;
         Ok(ExitCode::SUCCESS)
     }

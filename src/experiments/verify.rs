@@ -13,6 +13,7 @@ use serde::Deserialize;
 use serde_json::Value;
 
 use crate::files::manifest::{HashedFile, Manifest};
+use crate::files::ro_crate::{self, RO_CRATE};
 use crate::files::{FileError, npy, sha256, tables};
 
 /// Numbers agree if they differ by no more than this share of the larger one, or of 1.
@@ -67,13 +68,18 @@ impl Display for Finding {
     }
 }
 
-/// Compares each file of a finished experiment with the hash that its manifest states.
+/// Compares each file of finished results with the hash that their manifest states, and the hashes of their crate with
+/// those of the manifest.
 ///
 /// # Errors
 /// If there is no manifest, or a file cannot be read.
 pub fn against_manifest(folder: &Path) -> Result<Vec<Finding>, FileError> {
     let outputs = Manifest::read(folder)?.outputs;
-    outputs
+    let of_crate = ro_crate::stated(folder)?.map(|stated| {
+        let outcome = disagreement(&stated, &outputs).map_or(Outcome::Same, Outcome::Differs);
+        Finding { file: RO_CRATE.to_owned(), outcome }
+    });
+    let of_files = outputs
         .into_iter()
         .map(|HashedFile { file, sha256: stated }| {
             let inside = Path::new(&file).components().all(|part| matches!(part, Component::Normal(_)));
@@ -91,7 +97,24 @@ pub fn against_manifest(folder: &Path) -> Result<Vec<Finding>, FileError> {
             };
             Ok(Finding { file, outcome })
         })
-        .collect()
+        .collect::<Result<Vec<_>, _>>()?;
+    Ok(of_files.into_iter().chain(of_crate).collect())
+}
+
+/// The first file on which a crate and a manifest part ways, in words.
+fn disagreement(of_crate: &[HashedFile], of_manifest: &[HashedFile]) -> Option<String> {
+    let among = |file: &HashedFile, others: &[HashedFile]| {
+        others.iter().find(|other| other.file == file.file).map(|other| other.sha256 == file.sha256)
+    };
+    let of_manifest_alone = of_manifest.iter().find(|file| among(file, of_crate).is_none());
+    let of_both = of_crate.iter().find_map(|file| match among(file, of_manifest) {
+        None => Some(format!("states a SHA-256 of {}, which manifest.json does not list", file.file)),
+        Some(false) => Some(format!("states another SHA-256 of {} than manifest.json", file.file)),
+        Some(true) => None,
+    });
+    of_both.or_else(|| {
+        of_manifest_alone.map(|file| format!("states no SHA-256 of {}, which manifest.json lists", file.file))
+    })
 }
 
 /// Compares every table and matrix of `reference` with that of `folder`, and the settings if both have a

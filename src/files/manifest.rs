@@ -129,7 +129,11 @@ pub fn write_circumstances(folder: &Path, (started, clock): (SystemTime, Instant
     write_json(&folder.join("run.json"), &circumstances)
 }
 
-fn write_json(path: &Path, value: &impl Serialize) -> Result<(), FileError> {
+/// Writes plain data as JSON that is easy to read.
+///
+/// # Errors
+/// If it cannot be written.
+pub fn write_json(path: &Path, value: &impl Serialize) -> Result<(), FileError> {
     let text = serde_json::to_string_pretty(value).expect("plain data can be written as JSON");
     write_text(path, &(text + "\n"))
 }

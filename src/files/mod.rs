@@ -9,6 +9,7 @@ pub(crate) mod manifest;
 pub mod npy;
 pub(crate) mod provenance;
 pub(crate) mod result_folder;
+pub(crate) mod ro_crate;
 pub mod tables;
 pub mod touch;
 mod whole;

@@ -1,12 +1,14 @@
-//! Write results into a folder, and remember what was written for its manifest.
+//! Write results into a folder, and remember what was written for its manifest and its crate.
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::time::SystemTime;
 
 use serde::Serialize;
 
 use super::error::FileError;
 use super::manifest::{HashedFile, Manifest};
+use super::ro_crate;
 use super::tables::write_rows;
 use super::whole::write_text;
 
@@ -15,12 +17,13 @@ use super::whole::write_text;
 pub struct ResultFolder {
     path: PathBuf,
     names: Vec<String>,
+    begun: SystemTime,
 }
 
 impl ResultFolder {
-    /// A folder to write to.
+    /// A folder to write to. It is made when the work begins: its crate states that time.
     pub fn new(path: &Path) -> Self {
-        Self { path: path.to_owned(), names: Vec::new() }
+        Self { path: path.to_owned(), names: Vec::new(), begun: SystemTime::now() }
     }
 
     /// Where it is.
@@ -76,13 +79,15 @@ impl ResultFolder {
         Ok(())
     }
 
-    /// Writes the manifest, with the hashes of all files that were written or remembered.
+    /// Writes the manifest, with the hashes of all files that were written or remembered, and the crate, with the same.
     ///
     /// # Errors
-    /// If a file cannot be read, or the manifest not written.
+    /// If a file cannot be read, or one of the two not written.
     pub fn write_manifest(&self, manifest: Manifest) -> Result<(), FileError> {
         let hash = |name: &String| HashedFile::new(name, &self.path.join(name));
         let outputs = self.names.iter().map(hash).collect::<Result<_, _>>()?;
-        Manifest { outputs, ..manifest }.write(&self.path)
+        let manifest = Manifest { outputs, ..manifest };
+        manifest.write(&self.path)?;
+        ro_crate::write(&self.path, &manifest, self.begun)
     }
 }

@@ -22,6 +22,7 @@ const TABLE: &str = "comparison.csv";
 /// # Errors
 /// If a configuration's settings cannot be used, or a file cannot be written.
 pub fn compare(design: &Design, text: &str, out: &Path) -> Result<(), ExperimentError> {
+    let mut folder = ResultFolder::new(out);
     let all = design.all_settings()?;
     let outcomes = run(&all, out, "comparison")?;
     let tried: Vec<Tried> = (design.configurations.iter().zip(&all).zip(&outcomes))
@@ -35,7 +36,6 @@ pub fn compare(design: &Design, text: &str, out: &Path) -> Result<(), Experiment
             rows.push(one.row(claim, compared, &tried[0]));
         }
     }
-    let mut folder = ResultFolder::new(out);
     folder.write_rows(TABLE, &rows)?;
     folder.write_text(COPY, text)?;
     folder.write_manifest(Manifest::of_study("comparison", design.seed))?;

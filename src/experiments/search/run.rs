@@ -60,11 +60,17 @@ struct CreditRow {
 const CREDITED: usize = 100;
 
 /// Runs a search, or its rounds from that on which `from` says, and writes into `out`: scores.csv, credits.csv, search.md,
-/// best.toml and, after every round but the last, next.toml.
+/// design.toml, best.toml and, after every round but the last, next.toml.
 ///
 /// # Errors
 /// If a candidate's settings cannot be used, or a file cannot be written.
-pub fn search(design: &Design, from: Option<Continuation>, out: &Path) -> Result<String, ExperimentError> {
+pub fn search(
+    design: &Design,
+    text: &str,
+    from: Option<Continuation>,
+    out: &Path,
+) -> Result<String, ExperimentError> {
+    let mut folder = ResultFolder::new(out);
     let first = from.as_ref().map_or(0, |from| from.round - 1);
     let mut candidates = from.map_or_else(|| design.all_candidates(), |from| from.start);
     if candidates.is_empty() {
@@ -73,7 +79,6 @@ pub fn search(design: &Design, from: Option<Continuation>, out: &Path) -> Result
     }
     // Before hours are spent on those that come first.
     design.check(&candidates)?;
-    let mut folder = ResultFolder::new(out);
     let (mut scores, mut credits, mut rounds) = (Vec::new(), Vec::new(), Vec::new());
     for (at, round) in design.round.iter().enumerate().skip(first) {
         candidates.truncate(round.candidates);
@@ -116,6 +121,7 @@ pub fn search(design: &Design, from: Option<Continuation>, out: &Path) -> Result
         let overlay = toml::to_string(&best.candidate.settings).expect("a table can be written");
         folder.write_text("best.toml", &format!("# Candidate {}.\n{overlay}", best.candidate.name))?;
     }
+    folder.write_text("design.toml", text)?;
     folder.write_manifest(Manifest::of_study("search", design.seed))?;
     Ok(page)
 }

@@ -21,6 +21,7 @@ const TABLE: &str = "sensitivity.csv";
 /// # Errors
 /// If a value's settings cannot be used, or a file cannot be written.
 pub fn study(design: &Design, text: &str, out: &Path) -> Result<(), ExperimentError> {
+    let mut folder = ResultFolder::new(out);
     let (places, configurations): (Vec<_>, Vec<_>) = design.configurations()?.into_iter().unzip();
     let outcomes = run(&configurations, out, "sensitivity")?;
     let mut of_default = None;
@@ -30,7 +31,6 @@ pub fn study(design: &Design, text: &str, out: &Path) -> Result<(), ExperimentEr
         let default = of_default.get_or_insert_with(|| counted.clone());
         rows.extend(counted.rows(place, outcome, default));
     }
-    let mut folder = ResultFolder::new(out);
     folder.write_rows(TABLE, &rows)?;
     folder.write_text(COPY, text)?;
     folder.write_manifest(Manifest::of_study("sensitivity", design.seed))?;
