@@ -15,7 +15,7 @@ use super::specification::{self, Row, Specification};
 use super::work::{COPY, check_design};
 use crate::files::manifest::Manifest;
 use crate::files::result_folder::ResultFolder;
-use crate::files::{FileError, remove_partial};
+use crate::files::{FileError, read_text, remove_partial};
 use crate::report::plot::specifications as curve;
 
 /// A row of multiverse.csv.
@@ -34,12 +34,12 @@ struct NumberedRow<'a> {
 /// # Errors
 /// If `out` holds another design or lacks a specification, or a file cannot be written.
 pub fn gather(design: &Design, text: &str, out: &Path) -> Result<(), ExperimentError> {
+    let mut folder = ResultFolder::new(out);
     check_design(text, out)?;
     let all = read_all(design, out)?;
     // What shards that were killed left: nobody is at work any more.
     remove_partial(&out.join("specifications"))?;
     clear_checkpoints(out)?;
-    let mut folder = ResultFolder::new(out);
     folder.remember([COPY.to_owned()]);
     folder.write_rows("specifications.csv", all.iter().map(|one| row_of(design, one)))?;
     let rows = all.iter().flat_map(|one| {
@@ -64,6 +64,22 @@ pub fn gather(design: &Design, text: &str, out: &Path) -> Result<(), ExperimentE
     folder.write_text("multiverse.md", &page(&evaluation))?;
     folder.write_manifest(Manifest::of_study("multiverse", design.seed))?;
     Ok(())
+}
+
+/// Whether a folder holds a multiverse.
+pub fn is_multiverse(folder: &Path) -> bool {
+    folder.join(COPY).is_file() && folder.join("specifications").is_dir()
+}
+
+/// Gathers the specifications of a multiverse again, by the design in its folder.
+///
+/// # Errors
+/// As [`gather`].
+pub fn redraw(folder: &Path) -> Result<(), ExperimentError> {
+    let path = folder.join(COPY);
+    let text = read_text(&path)?;
+    let design = Design::parse(&text, &path.display().to_string())?;
+    gather(&design, &text, folder)
 }
 
 fn read_all(design: &Design, out: &Path) -> Result<Vec<Specification>, ExperimentError> {

@@ -9,5 +9,5 @@ mod specification;
 mod work;
 
 pub use self::design::Design;
-pub use self::gather::gather;
+pub use self::gather::{gather, is_multiverse, redraw};
 pub use self::work::{Shard, rerun, work};

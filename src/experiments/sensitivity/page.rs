@@ -190,7 +190,9 @@ impl Page<'_> {
             "**Data behind each answer:** {} simulations, {} draws in the median, of which {fewest} to {most} are eligible \
              (median {}). A draw is eligible if it has the right number of parts and an adjusted Rand index (ARI) of 1; \
              the tree accuracy is the share of eligible draws whose tree is right. Few eligible draws make wide \
-             intervals: read \u{201c}perhaps\u{201d} as \u{201c}not enough data\u{201d}.\n",
+             intervals: read \u{201c}perhaps\u{201d} as \u{201c}not enough data\u{201d}. In what share of all reasonable choices \
+             together it survives is asked by the multiverse (`reproduce/multiverse.sh`); this page shows what one of them \
+             does.\n",
             self.simulations,
             quantile(&all, 0.5),
             quantile(&eligible, 0.5)
