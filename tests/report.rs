@@ -3,11 +3,15 @@
 
 use std::collections::HashMap;
 use std::fs;
-use std::io::Write;
 use std::path::Path;
 use std::process::Command;
 
 use serde::Deserialize;
+
+#[path = "support/browser.rs"]
+mod browser;
+
+use browser::{inaccessible, quoted, seen};
 
 /// A body of 5 parts of 24 sensors that moves for 1500 s, at the dimensions whose maps are drawn.
 const SMALL: &str = "
@@ -106,31 +110,11 @@ struct Figure {
 
 /// What Chromium shows of a report, at the width of a phone and of a desk; none without Chromium.
 fn look(report: &str, folder: &Path) -> Option<Vec<Seen>> {
-    // Within a script, "</" would end it.
-    let quoted = serde_json::to_string(report).unwrap().replace("</", "<\\/");
-    let page = folder.join("harness.html");
-    fs::write(&page, HARNESS.replace("REPORT", &quoted)).unwrap();
-    let output = Command::new("chromium")
-        .args(["--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--no-first-run"])
-        .args(["--disable-background-networking", "--disable-component-update", "--disable-sync"])
-        .arg(format!("--user-data-dir={}", folder.join("chromium").display()))
-        .args(["--virtual-time-budget=20000", "--dump-dom"])
-        .arg(format!("file://{}", page.display()))
-        .output();
-    let output = match output {
-        Ok(output) => output,
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => {
-            // Not by eprintln, which the test harness would keep to itself.
-            let line = "report.rs: skipped: there is no Chromium (Debian's package chromium) to open the report in\n";
-            std::io::stderr().write_all(line.as_bytes()).unwrap();
-            return None;
-        }
-        Err(error) => panic!("Chromium cannot be started: {error}"),
-    };
-    let page = String::from_utf8_lossy(&output.stdout);
-    let (_, rest) = page.split_once("id=\"seen\">").unwrap_or_else(|| panic!("{output:?}"));
-    let (seen, _) = rest.split_once("</pre>").unwrap();
-    let seen = seen.replace("&amp;", "&").replace("&lt;", "<").replace("&gt;", ">");
+    let seen = seen(
+        &HARNESS.replace("REPORT", &quoted(report)),
+        folder,
+        &["--disable-gpu", "--virtual-time-budget=20000"],
+    )?;
     Some(serde_json::from_str(&seen).unwrap_or_else(|error| panic!("{error}: {seen}")))
 }
 
@@ -202,6 +186,9 @@ fn the_report_shows_every_figure_and_nothing_overflows() {
                 assert!(cut.is_empty(), "{context}: {name} cuts off {cut:?}");
             }
         }
+        let found = inaccessible(&report, folder.path(), &["--disable-gpu"]).unwrap_or_default();
+        assert!(found.is_empty(), "{experiment}: {found:#?}");
+        assert!(report.len() < 3_000_000, "{experiment}: {} bytes", report.len());
         // The twin: a report that is too wide is seen.
         let wide = report.replace("</main>", "<p style=\"width:1400px\">wide</p></main>");
         let seen = look(&wide, folder.path()).unwrap();

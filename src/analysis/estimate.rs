@@ -3,7 +3,7 @@
 use rand::Rng;
 
 use crate::stages::co_motion::{CoMotion, RigidParts, co_motion, is_signed, rigid_parts, spread};
-use crate::stages::distance::information_metric;
+use crate::stages::distance::{Distances, information_metric};
 use crate::stages::quantise::{Quantise, quantise};
 use crate::stages::sense::Tactile;
 
@@ -24,6 +24,10 @@ pub struct Estimate {
     pub parts: RigidParts,
     /// The tree over the parts.
     pub tree: CoMotion,
+    /// The sensors whose distances were computed, rising.
+    pub mapped: Vec<usize>,
+    /// Their distances.
+    pub distances: Distances,
 }
 
 /// Estimates the parts and the tree.
@@ -37,7 +41,7 @@ pub fn estimate(tactile: &Tactile, levels: &Quantise, rng: &mut impl Rng, tick: 
     tick();
     let tree = co_motion(tactile, &trusted(&parts), None, rng);
     tick();
-    Estimate { parts, tree }
+    Estimate { parts, tree, mapped: sensors, distances }
 }
 
 /// The part of each sensor that its part's motion explains. Others may be on another part, and would bring that one's motion.

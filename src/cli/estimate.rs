@@ -7,7 +7,8 @@ use anyhow::{Result, ensure};
 use clap::Args;
 use serde::Serialize;
 
-use super::options::{SettingsAndSeed, TruthFiles};
+use super::estimate_report::{Read, Shown};
+use super::options::{SettingsAndSeed, TruthFiles, seconds};
 use super::output::say;
 use super::tree::{self, say_lost};
 use crate::analysis::estimate::{self, estimate};
@@ -17,9 +18,9 @@ use crate::files::tables::write_rows;
 use crate::files::touch::read_touch;
 use crate::files::{prepare_folder, write_text};
 use crate::numerics::rng::stream;
+use crate::report::estimated::page;
 use crate::stages::co_motion::{MIN_SENSORS, is_signed};
 use crate::stages::schema::Draw;
-use crate::stages::sense::Tactile;
 use crate::stages::tree::Truth;
 use crate::stages::usable::{Fault, Usable, usable};
 
@@ -27,7 +28,7 @@ use crate::stages::usable::{Fault, Usable, usable};
 ///
 /// Reads pressures (T x M, any numbers) and writes into DIR: parts.csv (sensor,part,unexplained,next_part,next_unexplained),
 /// tree.csv (child,parent,confidence), edges.csv (part,other,agreement,confidence,in_tree), dropped.csv (sensor,fault: those
-/// that are dead, constant or no number) and summary.json. A part is rigid: sensors are on one part if one motion explains
+/// that are dead, constant or no number), summary.json and report.html, which shows parts, tree and touch. A part is rigid: sensors are on one part if one motion explains
 /// what all of them feel. unexplained is the share of a sensor's squares that the motion of its part leaves, next_unexplained
 /// what the next best part leaves. Parts are joined as by `tree`.
 #[derive(Args)]
@@ -38,6 +39,9 @@ pub struct Estimate {
     common: SettingsAndSeed,
     #[command(flatten)]
     truth: TruthFiles,
+    /// Time between two samples, s, by which the report counts; samples if not given
+    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    interval: Option<f64>,
     /// Folder to write to
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
@@ -104,8 +108,10 @@ impl Estimate {
         bar.finish_and_clear();
         let read = Read { tactile: &tactile, sensors: &sensors, dropped: &dropped, lost_samples };
         let summary = write(out, &found, &read, seed)?;
+        let shown = Shown { name: in_file(), interval: self.interval, truth: truth.as_ref(), seed };
+        write_text(&out.join("report.html"), &page(&shown.estimated(&found, &read)))?;
         say(format!(
-            "{} parts of {} sensors over {} samples, in {}",
+            "{} parts of {} sensors over {} samples, in {}; open report.html there",
             summary.parts,
             sensors.len(),
             summary.samples,
@@ -127,14 +133,6 @@ impl Estimate {
         }
         Ok(ExitCode::SUCCESS)
     }
-}
-
-/// What of the input was used.
-struct Read<'a> {
-    tactile: &'a Tactile,
-    sensors: &'a [usize],
-    dropped: &'a [(usize, Fault)],
-    lost_samples: usize,
 }
 
 /// Writes all files.

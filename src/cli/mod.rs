@@ -1,7 +1,8 @@
-//! The command line: one subcommand for each stage and each experiment, two for finished results, and one that makes bodies.
+//! The command line: one subcommand for each stage and each experiment, three for finished results, and one that makes bodies.
 
 mod body;
 mod estimate;
+mod estimate_report;
 mod experiments;
 mod options;
 mod output;
@@ -10,5 +11,6 @@ mod program;
 mod results;
 mod stages;
 mod tree;
+mod view;
 
 pub use self::program::main;

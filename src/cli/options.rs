@@ -214,6 +214,12 @@ impl Choice for Experiment {
     ];
 }
 
+/// A length of time above 0, s.
+pub fn seconds(text: &str) -> Result<f64, String> {
+    let seconds: f64 = text.parse().map_err(|_| "it must be a number of seconds".to_owned())?;
+    if seconds.is_finite() && seconds > 0.0 { Ok(seconds) } else { Err("it must be above 0".to_owned()) }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

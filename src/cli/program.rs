@@ -11,6 +11,7 @@ use super::experiments::{Bodies, Compare, Multiverse, Reproduce, Search, Sensiti
 use super::results::{Plot, Verify};
 use super::stages::{Distance, Infer, Map, Simulate};
 use super::tree::Tree;
+use super::view::View;
 
 /// Finds out from touch alone how many parts a body has, which sensor sits on which part, and how the parts are
 /// joined: a replication of Mimura, Hagiwara, Taniguchi and Inamura (2017).
@@ -38,6 +39,7 @@ enum Command {
     Bodies(Bodies),
     Plot(Plot),
     Verify(Verify),
+    View(View),
 }
 
 impl Command {
@@ -58,6 +60,7 @@ impl Command {
             Self::Bodies(command) => command.run(),
             Self::Plot(command) => command.run(),
             Self::Verify(command) => command.run(),
+            Self::View(command) => command.run(),
         }
     }
 }

@@ -15,6 +15,7 @@ use crate::analysis::posterior::Posterior;
 use crate::analysis::statistics::{Estimate, mean, rate};
 use crate::experiments::progress::progress;
 use crate::files::body::{NamedBody, read_body};
+use crate::files::moved_body::MovedBody;
 use crate::files::{npy, prepare_folder, tables};
 use crate::numerics::rng::stream;
 use crate::pipeline::map_stream;
@@ -31,8 +32,9 @@ use crate::stages::simulate::simulate;
 /// Stages 1 and 2: moves a body at random in a fluid and records the pressure on its sensors.
 ///
 /// Writes into DIR: tactile.npy (float32, T x M, Pa), labels.csv (sensor,part), tree.csv (child,parent) and
-/// joint-angles.csv (time_s, then the angles of each joint in rad; T + 1 rows); with --body also names.csv (part,name). T
-/// is the number of samples, M of sensors.
+/// joint-angles.csv (time_s, then the angles of each joint in rad; T + 1 rows); for `view` also solids.csv, sensors.csv and
+/// poses.npy (float32, T + 1 x 7 for each solid); with --body also names.csv (part,name). T is the number of samples, M of
+/// sensors.
 #[derive(Args)]
 pub struct Simulate {
     #[command(flatten)]
@@ -72,6 +74,7 @@ impl Simulate {
             tables::write_rows(&out.join("names.csv"), rows)?;
         }
         tables::write_joint_angles(&out.join("joint-angles.csv"), &agent.joints, &trajectory, interval)?;
+        MovedBody::of(&agent, &trajectory).write(out, &agent.rigid_bodies())?;
         let tactile = sense(&agent, &trajectory, tactile_sense);
         npy::write_tactile(&out.join("tactile.npy"), &tactile)?;
         say(format!(

@@ -6,6 +6,7 @@ mod error;
 mod hash;
 pub mod import;
 pub(crate) mod manifest;
+pub(crate) mod moved_body;
 pub mod npy;
 pub(crate) mod provenance;
 pub(crate) mod result_folder;

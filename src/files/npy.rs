@@ -38,7 +38,8 @@ pub fn write_assignments(path: &Path, draws: &[Draw]) -> Result<(), FileError> {
     write(path, [draws.len(), sensors], Order::C, labels)
 }
 
-fn write<T: npyz::AutoSerialize>(
+/// Writes a matrix whose values come in the order given.
+pub(super) fn write<T: npyz::AutoSerialize>(
     path: &Path,
     shape: [usize; 2],
     order: Order,
@@ -147,15 +148,16 @@ pub fn read_body_map(path: &Path) -> Result<BodyMap, FileError> {
     Ok(BodyMap { dims: matrix.columns, coordinates: matrix.values })
 }
 
-struct Matrix<T> {
-    rows: usize,
-    columns: usize,
-    values: Vec<T>,
+/// A matrix as it was read.
+pub(super) struct Matrix<T> {
+    pub(super) rows: usize,
+    pub(super) columns: usize,
+    pub(super) values: Vec<T>,
 }
 
 impl<T: Copy> Matrix<T> {
     /// Reads a matrix of float32, float64 or any integer type into the order `wanted`, each value checked by `convert`.
-    fn read(
+    pub(super) fn read(
         path: &Path,
         wanted: Order,
         convert: impl Fn(f64) -> Result<T, &'static str>,

@@ -1,6 +1,6 @@
 //! Write what an experiment found into one page, `report.html`, that needs no other file and no network.
 //!
-//! It is made from the folder alone (claims.csv, manifest.json, figures/), so that it can be made again.
+//! It is made from the folder alone (claims.csv, manifest.json, figures/, scenes/), so that it can be made again.
 
 use std::path::Path;
 
@@ -9,7 +9,9 @@ use serde_json::Value;
 
 use super::claims_table::Row;
 use super::figure_rows::Counting;
+use super::overview::overview;
 use super::ranges;
+use super::viewer;
 use crate::analysis::claims::Verdict;
 use crate::analysis::published::{Figure, figures};
 use crate::files::manifest::{HashedFile, Manifest};
@@ -31,10 +33,11 @@ pub fn write(folder: &Path) -> Result<(), FileError> {
             shown.push((figure, read_text(&path)?));
         }
     }
-    write_text(&folder.join("report.html"), &page(&rows, &shown, &manifest).into_string())
+    let scenes = viewer::stored::read(folder)?;
+    write_text(&folder.join("report.html"), &page(&rows, &shown, &scenes, &manifest).into_string())
 }
 
-fn page(rows: &[Row], figures: &[(Figure, String)], manifest: &Manifest) -> Markup {
+fn page(rows: &[Row], figures: &[(Figure, String)], scenes: &[Value], manifest: &Manifest) -> Markup {
     let experiment = match manifest.experiment.as_deref() {
         Some("exp1") => "Experiment 1: body schema estimation",
         Some("exp2") => "Experiment 2: ratio of motor coordination",
@@ -47,7 +50,7 @@ fn page(rows: &[Row], figures: &[(Figure, String)], manifest: &Manifest) -> Mark
                 meta charset="utf-8";
                 meta name="viewport" content="width=device-width, initial-scale=1";
                 title { "bodyschema: " (experiment) }
-                style { (PreEscaped(include_str!("style.css"))) }
+                style { (PreEscaped(include_str!("style.css"))) (PreEscaped(viewer::page::STYLE)) }
             }
             body {
                 header {
@@ -56,17 +59,19 @@ fn page(rows: &[Row], figures: &[(Figure, String)], manifest: &Manifest) -> Mark
                         "Bayesian Body Schema Estimation using Tactile Information obtained through Coordinated \
                          Random Movements"
                     } " (Advanced Robotics, 2017)." }
-                    p { (manifest.summary.as_deref().unwrap_or_default()) }
                     @for line in &manifest.headline { p.headline { (line) } }
                     nav {
                         @for (to, name) in
-                            [("claims", "Claims"), ("figures", "Figures"), ("settings", "Settings"), ("manifest", "Manifest")]
+                            [("overview", "Overview"), ("viewer", "Body"), ("claims", "Claims"), ("figures", "Figures"), ("settings", "Settings"), ("manifest", "Manifest")]
                         {
                             a href={ "#" (to) } { (name) } " "
                         }
                     }
                 }
                 main {
+                    (overview(rows, &class, &mark))
+                    p { (manifest.summary.as_deref().unwrap_or_default()) }
+                    @if !scenes.is_empty() { (movement_section(scenes)) }
                     (claims_section(rows))
                     section id="figures" {
                         h2 { "Figures" }
@@ -77,6 +82,18 @@ fn page(rows: &[Row], figures: &[(Figure, String)], manifest: &Manifest) -> Mark
                 }
             }
         }
+    }
+}
+
+/// The body that moves. Its estimate is one draw, which is said.
+fn movement_section(scenes: &[Value]) -> Markup {
+    html! {
+        h2 { "The body, what it feels, and what it learned" }
+        p {
+            "The first simulation, as it begins to move, the first three dimensions of its body map, and the draw of highest \
+             log posterior of DPGMM-LJ."
+        }
+        (viewer::page::section(scenes))
     }
 }
 
@@ -95,7 +112,6 @@ fn claims_section(rows: &[Row]) -> Markup {
                 ". The accepted range of each was fixed before the first run of its kind. Rows marked extension \
                  count only the draw of highest log posterior of each simulation, which the paper does not."
             }
-            (ranges::legend())
             table.claims {
                 thead {
                     tr {

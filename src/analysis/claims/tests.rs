@@ -199,6 +199,30 @@ fn modes_medians_and_the_first_dimension() {
 }
 
 #[test]
+fn pooled_trees_lower_aris_and_shares_of_all_draws() {
+    let at = |d, correct| record(Model::Dpgmm, d, 5, 1.0, correct);
+    let unlike = Record { eligible: false, ..at(3, true) };
+    let never = judge_by_id("baseline-tree", &[at(2, false), at(14, false), unlike]);
+    assert_eq!((never.verdict, never.reproduced.value), (Verdict::Reproduced, Some(0.0)));
+    let once = judge_by_id("baseline-tree", &[at(2, false), at(14, true)]);
+    assert_eq!((once.verdict, once.reproduced.value), (Verdict::NotReproduced, Some(0.5)));
+
+    let both = |d, dpgmm, joints| {
+        [record(Model::Dpgmm, d, 5, dpgmm, false), record(Model::DpgmmLj, d, 5, joints, false)]
+    };
+    let worse = judge_by_id("ari-worse-with-joints", &[both(2, 0.9, 0.8), both(3, 0.8, 0.9)].concat());
+    assert_eq!((worse.verdict, worse.reproduced.value), (Verdict::Reproduced, Some(0.5)));
+    let better = judge_by_id("ari-worse-with-joints", &[both(2, 0.8, 0.9), both(3, 0.9, 0.9)].concat());
+    assert_eq!((better.verdict, better.reproduced.value), (Verdict::NotReproduced, Some(0.0)));
+
+    let still = |eligible, correct| Record { eligible, ..moved(1.0, 1, correct) };
+    let none = judge_by_id("tree-without-movement", &[still(false, true), still(true, false)]);
+    assert_eq!((none.verdict, none.reproduced.value), (Verdict::Reproduced, Some(0.0)));
+    let some = judge_by_id("tree-without-movement", &[still(true, true), still(false, true)]);
+    assert_eq!((some.verdict, some.reproduced.value), (Verdict::NotReproduced, Some(0.5)));
+}
+
+#[test]
 fn clusterings_are_compared_over_numbers_of_clusters() {
     let baseline = |method, clusters, ari| BaselineEstimate {
         method,

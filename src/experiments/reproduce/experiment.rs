@@ -11,6 +11,7 @@ use super::super::progress::progress;
 use super::super::task::{Keep, Task};
 use super::reading::OtherReading;
 use super::run::{Run, preamble};
+use super::scenes;
 use crate::analysis::claims::{Judged, judge};
 use crate::analysis::conditions::{Conditions, baseline_estimates};
 use crate::analysis::measure::Evidence;
@@ -21,6 +22,7 @@ use crate::files::checkpoint::Checkpoints;
 use crate::files::manifest::{HashedFile, Manifest, write_circumstances};
 use crate::files::provenance::Provenance;
 use crate::files::result_folder::ResultFolder;
+use crate::files::ro_crate::RO_CRATE;
 use crate::numerics::rng::stream;
 use crate::pipeline::Condition;
 use crate::report::claims_table::{comparison, markdown, rows};
@@ -49,7 +51,7 @@ pub struct Finished {
 pub fn reproduce(run: &Run) -> Result<Finished, ExperimentError> {
     let begun = (SystemTime::now(), Instant::now());
     let mut folder = ResultFolder::new(run.out);
-    folder.remove(made_anew())?;
+    folder.remove(made_anew().chain(scenes::made_anew(run.out)))?;
     let checkpoints = Checkpoints::new(run.out, &(run.experiment, run.settings));
     let tasks = tasks(run);
     let other = OtherReading::of(run, &tasks);
@@ -65,6 +67,7 @@ pub fn reproduce(run: &Run) -> Result<Finished, ExperimentError> {
 
     let evidence = write_draws(run, &found, &mut folder)?;
     write_figures(run, &tasks, &found, &movements, &evidence, &mut folder)?;
+    scenes::write(run, &tasks, &found, &mut folder)?;
     let mut judged = judge(run.experiment, &evidence);
     add_single_bodies(run.experiment, &mut judged, &evidence_of_bodies(run, &found, &evidence));
     let resolution =
@@ -78,6 +81,7 @@ pub fn reproduce(run: &Run) -> Result<Finished, ExperimentError> {
     }
     folder.write_rows("claims.csv", rows(&judged))?;
     folder.write_text("claims.md", &markdown(&preamble, &judged))?;
+    folder.write_text("settings.toml", &settings_file(run))?;
     folder.write_manifest(manifest(run, &preamble, &tasks, &found, &judged)?)?;
     page::write(run.out)?;
     write_circumstances(run.out, begun)?;
@@ -90,7 +94,15 @@ fn made_anew() -> impl Iterator<Item = String> {
     let pictures = figures()
         .into_iter()
         .flat_map(|figure| ["csv", "svg"].map(|extension| format!("figures/{}.{extension}", figure.name)));
-    let names = ["other-reading.csv", "claims.csv", "claims.md", "report.html", "manifest.json", "run.json"];
+    let names = [
+        "other-reading.csv",
+        "claims.csv",
+        "claims.md",
+        "report.html",
+        "manifest.json",
+        RO_CRATE,
+        "run.json",
+    ];
     names.map(str::to_owned).into_iter().chain(pictures)
 }
 
@@ -236,6 +248,13 @@ fn movements(run: &Run) -> Result<Option<Movements>, ExperimentError> {
         trajectories.push((coordination, trajectory));
     }
     Ok(Some(Movements { agent, trajectories, interval }))
+}
+
+/// All settings of a run, with which anyone can repeat it.
+fn settings_file(run: &Run) -> String {
+    let settings = toml::to_string(run.settings).expect("settings are tables");
+    let use_it = format!("bodyschema reproduce {} --settings settings.toml --out DIR", run.experiment.name());
+    format!("# Use: {use_it}\n{settings}")
 }
 
 /// What the results depend on; their hashes come with the folder.

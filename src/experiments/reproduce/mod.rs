@@ -3,6 +3,7 @@
 mod experiment;
 mod reading;
 mod run;
+mod scenes;
 
 pub use self::experiment::{Finished, reproduce};
 pub use self::run::Run;

@@ -1,0 +1,54 @@
+//! The subcommand view.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use anyhow::Result;
+use clap::Args;
+
+use super::options::SettingsFile;
+use super::output::say;
+use crate::files::write_text;
+use crate::report::viewer::folder::{Sources, read};
+use crate::report::viewer::page::page;
+
+/// Shows a body that moves, what its skin feels, its map and its tree, as one page for a browser (not in the paper).
+///
+/// DIR is a folder of `simulate` or `estimate`, or one with data of your own: tactile.npy (or .csv), and, if there are any,
+/// parts.csv (sensor,part) and tree.csv (child,parent,confidence). A body is drawn where DIR has solids.csv, sensors.csv and
+/// poses.npy, as `simulate` writes them. Without body-map.npy, a map of three dimensions is made as by `distance` and `map`.
+#[derive(Args)]
+pub struct View {
+    /// Folder of a simulation, an estimate, or data of your own
+    #[arg(value_name = "DIR")]
+    folder: PathBuf,
+    /// Pressures, if they are not in DIR: a .npy or .csv file with a row for each sample and a column for each sensor
+    #[arg(long, value_name = "FILE")]
+    tactile: Option<PathBuf>,
+    /// Folder of an estimate of this body, with parts.csv and tree.csv
+    #[arg(long, value_name = "DIR")]
+    estimate: Option<PathBuf>,
+    #[command(flatten)]
+    file: SettingsFile,
+    /// File for the page [default: view.html in DIR]
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+}
+
+impl View {
+    /// Runs the subcommand.
+    pub fn run(self) -> Result<ExitCode> {
+        let settings = self.file.load(false)?;
+        let sources = Sources {
+            folder: &self.folder,
+            tactile: self.tactile.as_deref(),
+            estimate: self.estimate.as_deref(),
+        };
+        let scene = read(&sources, &settings)?;
+        let out = self.out.unwrap_or_else(|| self.folder.join("view.html"));
+        let title = format!("Body schema of {}", self.folder.display());
+        write_text(&out, &page(&title, &[scene.data()]))?;
+        say(format!("{} sensors at {} times, in {}", scene.sensors, scene.frames.count, out.display()))?;
+        Ok(ExitCode::SUCCESS)
+    }
+}

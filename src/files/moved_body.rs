@@ -1,0 +1,255 @@
+//! Write and read how a body is built and how it moved, for whoever wants to draw it: solids.csv, sensors.csv and poses.npy.
+//!
+//! A solid is a part as the body was described. Solids that are fixed to each other are one part in the truth.
+
+use std::path::Path;
+
+use npyz::Order;
+use serde::{Deserialize, Serialize};
+
+use super::error::FileError;
+use super::npy::{Matrix, write};
+use super::tables::{read_rows, write_rows};
+use crate::stages::agent::{Agent, Shape, Site, Vector3};
+use crate::stages::simulate::{Pose, Trajectory};
+
+/// Numbers of a pose: the centre (m), then the rotation as a quaternion w, x, y, z.
+pub const NUMBERS: usize = 7;
+
+/// The solids of a body, the sensors on them, and where the solids were.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MovedBody {
+    /// The shape of each solid, in its own frame.
+    pub shapes: Vec<Shape>,
+    /// The sensors; `part` is the solid.
+    pub sites: Vec<Site>,
+    /// (T + 1) × solids, by time.
+    pub poses: Vec<[f32; NUMBERS]>,
+}
+
+#[derive(Serialize, Deserialize)]
+struct SolidRow {
+    solid: usize,
+    part: usize,
+    shape: Kind,
+    radius_m: Option<f64>,
+    length_m: Option<f64>,
+    x_m: Option<f64>,
+    y_m: Option<f64>,
+    z_m: Option<f64>,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+enum Kind {
+    Cylinder,
+    Capsule,
+    Sphere,
+    Box,
+}
+
+#[derive(Serialize, Deserialize)]
+struct SensorRow {
+    sensor: usize,
+    solid: usize,
+    x_m: f64,
+    y_m: f64,
+    z_m: f64,
+    normal_x: f64,
+    normal_y: f64,
+    normal_z: f64,
+}
+
+impl MovedBody {
+    /// A body and how it moved.
+    pub fn of(agent: &Agent, trajectory: &Trajectory) -> Self {
+        let pose = |pose: &Pose| {
+            let ([x, y, z], [w, i, j, k]) = (pose.position, quaternion(&pose.rotation));
+            [x, y, z, w, i, j, k].map(|number| number as f32)
+        };
+        Self {
+            shapes: agent.parts.iter().map(|part| part.shape).collect(),
+            sites: agent.sites.clone(),
+            poses: trajectory.poses.iter().map(pose).collect(),
+        }
+    }
+
+    /// Whether a folder has one.
+    pub fn is_in(folder: &Path) -> bool {
+        folder.join("poses.npy").is_file()
+    }
+
+    /// Writes solids.csv, sensors.csv and poses.npy. `parts` are the true parts of the solids.
+    ///
+    /// # Errors
+    /// If a file cannot be written.
+    pub fn write(&self, folder: &Path, parts: &[usize]) -> Result<(), FileError> {
+        let solids = self.shapes.iter().zip(parts).enumerate();
+        write_rows(
+            &folder.join("solids.csv"),
+            solids.map(|(at, (shape, &part))| solid_row(at, part, shape)),
+        )?;
+        write_rows(&folder.join("sensors.csv"), self.sites.iter().enumerate().map(sensor_row))?;
+        let shape = [self.poses.len() / self.shapes.len(), NUMBERS * self.shapes.len()];
+        write(&folder.join("poses.npy"), shape, Order::C, self.poses.iter().flatten().copied())
+    }
+
+    /// Reads what [`MovedBody::write`] wrote.
+    ///
+    /// # Errors
+    /// If a file is missing, or they do not fit each other.
+    pub fn read(folder: &Path) -> Result<Self, FileError> {
+        let [solids, sensors, poses] =
+            ["solids.csv", "sensors.csv", "poses.npy"].map(|name| folder.join(name));
+        let shape = |(at, row): (usize, SolidRow)| {
+            let number = |value: Option<f64>| value.filter(|value| value.is_finite() && *value >= 0.0);
+            shape_of(&row, number)
+                .filter(|_| row.solid == at)
+                .ok_or_else(|| FileError::new(&solids, format!("row {} is no solid number {at}", at + 1)))
+        };
+        let shapes: Vec<Shape> =
+            read_rows(&solids)?.into_iter().enumerate().map(shape).collect::<Result<_, _>>()?;
+        let site = |(at, row): (usize, SensorRow)| {
+            let site = site_of(&row);
+            let finite = site.position.iter().chain(&site.normal).all(|number| number.is_finite());
+            if row.sensor != at || row.solid >= shapes.len() || !finite {
+                return Err(FileError::new(&sensors, format!("row {} is no sensor number {at}", at + 1)));
+            }
+            Ok(site)
+        };
+        let sites = read_rows(&sensors)?.into_iter().enumerate().map(site).collect::<Result<_, _>>()?;
+        let matrix = Matrix::read(&poses, Order::C, |value| {
+            if value.is_finite() { Ok(value as f32) } else { Err("a pose must be finite numbers") }
+        })?;
+        if matrix.columns != NUMBERS * shapes.len() {
+            let message = format!(
+                "has {} columns, but {} solids need {}: {NUMBERS} for each",
+                matrix.columns,
+                shapes.len(),
+                NUMBERS * shapes.len()
+            );
+            return Err(FileError::new(&poses, message));
+        }
+        Ok(Self { shapes, sites, poses: matrix.values.as_chunks().0.to_vec() })
+    }
+}
+
+fn solid_row(solid: usize, part: usize, shape: &Shape) -> SolidRow {
+    let none = SolidRow {
+        solid,
+        part,
+        shape: Kind::Box,
+        radius_m: None,
+        length_m: None,
+        x_m: None,
+        y_m: None,
+        z_m: None,
+    };
+    match *shape {
+        Shape::Cylinder { radius, length } => {
+            SolidRow { shape: Kind::Cylinder, radius_m: Some(radius), length_m: Some(length), ..none }
+        }
+        Shape::Capsule { radius, length } => {
+            SolidRow { shape: Kind::Capsule, radius_m: Some(radius), length_m: Some(length), ..none }
+        }
+        Shape::Sphere { radius } => SolidRow { shape: Kind::Sphere, radius_m: Some(radius), ..none },
+        Shape::Box { sides: [x, y, z] } => SolidRow { x_m: Some(x), y_m: Some(y), z_m: Some(z), ..none },
+    }
+}
+
+/// The shape of a row, its numbers checked; `None` if one is missing.
+fn shape_of(row: &SolidRow, number: impl Fn(Option<f64>) -> Option<f64>) -> Option<Shape> {
+    let radius = || number(row.radius_m);
+    let length = || number(row.length_m);
+    Some(match row.shape {
+        Kind::Cylinder => Shape::Cylinder { radius: radius()?, length: length()? },
+        Kind::Capsule => Shape::Capsule { radius: radius()?, length: length()? },
+        Kind::Sphere => Shape::Sphere { radius: radius()? },
+        Kind::Box => Shape::Box { sides: [number(row.x_m)?, number(row.y_m)?, number(row.z_m)?] },
+    })
+}
+
+fn sensor_row((sensor, site): (usize, &Site)) -> SensorRow {
+    let ([x_m, y_m, z_m], [normal_x, normal_y, normal_z]) = (site.position, site.normal);
+    SensorRow { sensor, solid: site.part, x_m, y_m, z_m, normal_x, normal_y, normal_z }
+}
+
+fn site_of(row: &SensorRow) -> Site {
+    Site {
+        part: row.solid,
+        position: [row.x_m, row.y_m, row.z_m],
+        normal: [row.normal_x, row.normal_y, row.normal_z],
+    }
+}
+
+/// The quaternion w, x, y, z of a rotation matrix given by rows, with the largest of the four positive.
+fn quaternion(rows: &[Vector3; 3]) -> [f64; 4] {
+    let [[a, b, c], [d, e, f], [g, h, i]] = *rows;
+    // Four times the products of the quaternion's numbers; the row with the largest square loses least by rounding.
+    let products = [
+        [1.0 + a + e + i, h - f, c - g, d - b],
+        [h - f, 1.0 + a - e - i, b + d, c + g],
+        [c - g, b + d, 1.0 - a + e - i, f + h],
+        [d - b, c + g, f + h, 1.0 - a - e + i],
+    ];
+    let best = (1..4).fold(0, |best, at| if products[at][at] > products[best][best] { at } else { best });
+    let length = products[best].iter().map(|number| number * number).sum::<f64>().sqrt();
+    products[best].map(|number| number / length)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::stages::agent::across;
+
+    #[test]
+    fn a_quaternion_turns_as_its_matrix() {
+        for axis in [[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.6, 0.0, -0.8], [0.48, -0.6, 0.64], [0.0, 0.0, -1.0]]
+        {
+            let rows = across(axis);
+            let [w, x, y, z] = quaternion(&rows);
+            let turned = [2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y)];
+            let along = [rows[0][2], rows[1][2], rows[2][2]];
+            assert!(turned.iter().zip(along).all(|(a, b)| (a - b).abs() < 1e-12), "{axis:?}: {turned:?}");
+            assert!((w * w + x * x + y * y + z * z - 1.0).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn what_is_written_is_read_back_and_a_missing_column_is_named() {
+        let folder = tempfile::tempdir().unwrap();
+        let shapes = vec![
+            Shape::Cylinder { radius: 0.1, length: 0.4 },
+            Shape::Capsule { radius: 0.1, length: 0.3 },
+            Shape::Sphere { radius: 0.2 },
+            Shape::Box { sides: [0.1, 0.2, 0.3] },
+        ];
+        let sites: Vec<Site> =
+            (0..4).map(|part| Site { part, position: [0.1, 0.0, 0.2], normal: [1.0, 0.0, 0.0] }).collect();
+        let poses = vec![[0.5, 0.25, 0.0, 1.0, 0.0, 0.0, 0.0]; 8];
+        let body = MovedBody { shapes, sites, poses };
+        body.write(folder.path(), &[0, 1, 2, 2]).unwrap();
+        assert_eq!(MovedBody::read(folder.path()).unwrap(), body);
+
+        let fewer = MovedBody { shapes: body.shapes[..2].to_vec(), sites: body.sites[..2].to_vec(), ..body };
+        fewer.write(folder.path(), &[0, 1]).unwrap();
+        std::fs::write(
+            folder.path().join("solids.csv"),
+            "solid,part,shape,radius_m,length_m,x_m,y_m,z_m\n0,0,sphere,0.1,,,,\n",
+        )
+        .unwrap();
+        assert!(MovedBody::read(folder.path()).unwrap_err().to_string().contains("row 2 is no sensor"));
+    }
+
+    #[test]
+    fn a_movement_keeps_its_places() {
+        let trajectory = Trajectory {
+            parts: 1,
+            poses: vec![Pose { position: [1.0, 2.0, 3.0], rotation: across([0.0, 0.0, 1.0]) }],
+            ..Trajectory::default()
+        };
+        let agent = Agent { parts: Vec::new(), joints: Vec::new(), sites: Vec::new() };
+        let body = MovedBody::of(&agent, &trajectory);
+        assert_eq!(body.poses[0][..3], [1.0, 2.0, 3.0]);
+    }
+}

@@ -1,0 +1,108 @@
+//! Show an estimate from one's own data as a page: parts, tree and touch in the viewer, and tables of parts and joints.
+
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+
+use super::numbers::percent;
+use super::viewer;
+use super::viewer::scene::Scene;
+
+/// What was estimated.
+#[derive(Debug)]
+pub struct Estimated {
+    /// The file of the pressures.
+    pub name: String,
+    /// What came out, a sentence each.
+    pub answers: Vec<String>,
+    /// The parts.
+    pub parts: Vec<PartLine>,
+    /// Parts, tree and touch.
+    pub scene: Scene,
+    /// How it was made: name and value.
+    pub facts: Vec<(&'static str, String)>,
+}
+
+/// A part, for the table.
+#[derive(Debug)]
+pub struct PartLine {
+    /// Its number.
+    pub part: usize,
+    /// How many sensors are on it.
+    pub sensors: usize,
+    /// How many numbers its sensors feel of its motion.
+    pub components: usize,
+    /// The share of their squares that its motion leaves, in the middle of its sensors.
+    pub unexplained: f64,
+}
+
+/// The page, which needs no other file and no network.
+pub fn page(estimated: &Estimated) -> String {
+    let Estimated { name, answers, parts, scene, facts } = estimated;
+    html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                title { "bodyschema: " (name) }
+                style { (PreEscaped(include_str!("style.css"))) (PreEscaped(viewer::page::STYLE)) }
+            }
+            body {
+                header {
+                    h1 { "Parts and tree from " (name) }
+                    @for answer in answers { p.headline { (answer) } }
+                }
+                main {
+                    (viewer::page::section(&[scene.data()]))
+                    (part_table(parts))
+                    (edge_table(scene))
+                    h2 { "How it was made" }
+                    dl { @for (name, value) in facts { dt { (name) } dd { (value) } } }
+                    p { "All numbers are in parts.csv, tree.csv, edges.csv and summary.json beside this page." }
+                }
+            }
+        }
+    }
+    .into_string()
+}
+
+fn part_table(parts: &[PartLine]) -> Markup {
+    html! {
+        h2 { "Parts" }
+        p { "A part is rigid: sensors are on one part if one motion explains what they feel. Unexplained is the share that it \
+             leaves, in the middle of the sensors of the part." }
+        table {
+            thead { tr { @for name in ["part", "sensors", "numbers of its motion", "unexplained"] { th scope="col" { (name) } } } }
+            tbody {
+                @for PartLine { part, sensors, components, unexplained } in parts {
+                    tr {
+                        td data-label="part" { (part) }
+                        td data-label="sensors" { (sensors) }
+                        td data-label="numbers of its motion" { (components) }
+                        td data-label="unexplained" { (percent(*unexplained)) " %" }
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn edge_table(scene: &Scene) -> Markup {
+    let edges = scene.estimate.iter().flat_map(|parts| &parts.tree);
+    html! {
+        h2 { "Joints" }
+        p { "Confidence is the share of trees over resampled times that have the joint. It does not know of sensors that are on a \
+             wrong part." }
+        table {
+            thead { tr { @for name in ["part", "joined to part", "confidence"] { th scope="col" { (name) } } } }
+            tbody {
+                @for edge in edges {
+                    tr {
+                        td data-label="part" { (edge.child) }
+                        td data-label="joined to part" { (edge.parent) }
+                        td data-label="confidence" { @if let Some(share) = edge.confidence { (percent(share)) " %" } }
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,174 @@
+//! Gather what a folder has of a body: a simulation, an estimate, or one's own data.
+
+use std::path::{Path, PathBuf};
+
+use serde::Deserialize;
+
+use super::frames::Frames;
+use super::scene::{Parts, Scene, TreeEdge};
+use crate::files::moved_body::MovedBody;
+use crate::files::tables::{read_cells, read_parts, read_rows};
+use crate::files::touch::read_touch;
+use crate::files::{FileError, npy};
+use crate::settings::Settings;
+use crate::stages::body_map::{BodyMap, ClassicalScaling, scaled};
+use crate::stages::distance::information_metric;
+use crate::stages::quantise::quantise;
+use crate::stages::sense::Tactile;
+use crate::stages::usable::usable;
+
+/// Where the files of a scene are.
+#[derive(Debug, Clone, Copy)]
+pub struct Sources<'a> {
+    /// The folder.
+    pub folder: &'a Path,
+    /// Pressures, if they are not in the folder.
+    pub tactile: Option<&'a Path>,
+    /// Folder of an estimate, if it is not the folder itself.
+    pub estimate: Option<&'a Path>,
+}
+
+/// Reads what there is. Makes a map of three dimensions where there is none.
+///
+/// # Errors
+/// If there are no pressures, or files do not fit each other.
+pub fn read(sources: &Sources, settings: &Settings) -> Result<Scene, FileError> {
+    /// Room for pressures, bytes.
+    const ROOM: usize = 1_000_000;
+    let folder = sources.folder;
+    let tactile = tactile(sources)?;
+    let touch = read_touch(&tactile)?;
+    let sensors = touch.sensors();
+    let body = MovedBody::is_in(folder).then(|| MovedBody::read(folder)).transpose()?;
+    if let Some(body) = &body {
+        check(folder, body, &touch)?;
+    }
+    let interval = interval(folder);
+    let labels = folder.join("labels.csv");
+    let truth =
+        if labels.is_file() { Some(parts(&labels, &[folder.join("tree.csv")], sensors)?) } else { None };
+    let found = sources.estimate.unwrap_or(folder);
+    let file = found.join("parts.csv");
+    let estimate = if file.is_file() {
+        // A tree beside labels is the true one.
+        let trees: &[&str] =
+            if found.join("labels.csv").is_file() { &["edges.csv"] } else { &["tree.csv", "edges.csv"] };
+        let trees: Vec<PathBuf> = trees.iter().map(|name| found.join(name)).collect();
+        Some(parts(&file, &trees, sensors)?)
+    } else if let Some(estimate) = sources.estimate {
+        return Err(FileError::new(
+            estimate,
+            "has no parts.csv; give a folder that `bodyschema estimate` wrote",
+        ));
+    } else {
+        None
+    };
+    let frames = Frames::of(&touch, Frames::every(interval), ROOM);
+    let shown = frames.of_touch(&touch);
+    let map = map(&[found, folder], touch, settings)?;
+    Ok(Scene { name: String::new(), frames, interval, sensors, touch: shown, body, map, truth, estimate })
+}
+
+/// The file of the pressures.
+fn tactile(sources: &Sources) -> Result<PathBuf, FileError> {
+    if let Some(tactile) = sources.tactile {
+        return Ok(tactile.to_owned());
+    }
+    let folder = sources.folder;
+    if !folder.is_dir() {
+        return Err(FileError::new(folder, "no such folder"));
+    }
+    let names = ["tactile.npy", "tactile.csv"].map(|name| folder.join(name));
+    names.into_iter().find(|path| path.is_file()).ok_or_else(|| {
+        FileError::new(
+            folder,
+            "has no tactile.npy or tactile.csv; give the file of the pressures with --tactile",
+        )
+    })
+}
+
+/// Whether a body is that of the pressures.
+fn check(folder: &Path, body: &MovedBody, touch: &Tactile) -> Result<(), FileError> {
+    let times = body.poses.len() / body.shapes.len();
+    if body.sites.len() == touch.sensors() && times == touch.samples + 1 {
+        return Ok(());
+    }
+    let message = format!(
+        "is of {} sensors and {} samples, but the pressures are of {} sensors and {} samples",
+        body.sites.len(),
+        times - 1,
+        touch.sensors(),
+        touch.samples
+    );
+    Err(FileError::new(&folder.join("poses.npy"), message))
+}
+
+/// Time between two samples as joint-angles.csv has it, s.
+fn interval(folder: &Path) -> Option<f64> {
+    let cells = read_cells(&folder.join("joint-angles.csv")).ok()?;
+    let time = |row: usize| cells.get(row)?.first()?.parse::<f64>().ok();
+    Some(time(2)? - time(1)?).filter(|interval| *interval > 0.0 && interval.is_finite())
+}
+
+/// A row of tree.csv or edges.csv, whose columns differ by the method.
+#[derive(Deserialize)]
+struct EdgeRow {
+    #[serde(alias = "part")]
+    child: usize,
+    #[serde(alias = "other")]
+    parent: usize,
+    #[serde(alias = "probability")]
+    confidence: Option<f64>,
+    in_tree: Option<bool>,
+}
+
+/// Parts and the first tree that exists; no tree is no error.
+fn parts(file: &Path, trees: &[PathBuf], sensors: usize) -> Result<Parts, FileError> {
+    let of = read_parts(file, sensors)?;
+    let Some(path) = trees.iter().find(|path| path.is_file()) else {
+        return Ok(Parts { of, tree: Vec::new() });
+    };
+    let rows: Vec<EdgeRow> = read_rows(path)?;
+    let known = |part: usize| of.contains(&Some(part));
+    let mut tree = Vec::new();
+    for EdgeRow { child, parent, confidence, .. } in rows.into_iter().filter(|row| row.in_tree != Some(false))
+    {
+        if let Some(part) = [child, parent].into_iter().find(|part| !known(*part)) {
+            return Err(FileError::new(path, format!("part {part} has no sensor in {}", file.display())));
+        }
+        tree.push(TreeEdge { child, parent, confidence });
+    }
+    Ok(Parts { of, tree })
+}
+
+/// The map of the first folder that has one, and else the classical one of three dimensions; `None` where pressures
+/// give none.
+fn map(folders: &[&Path], touch: Tactile, settings: &Settings) -> Result<Option<BodyMap>, FileError> {
+    const DIMS: usize = 3;
+    let sensors = touch.sensors();
+    if let Some(path) = folders.iter().map(|folder| folder.join("body-map.npy")).find(|path| path.is_file()) {
+        let map = npy::read_body_map(&path)?;
+        if map.points() != sensors {
+            let message = format!("has {} points, but there are {sensors} sensors", map.points());
+            return Err(FileError::new(&path, message));
+        }
+        return Ok(Some(map));
+    }
+    let used = usable(touch);
+    if used.sensors.len() <= DIMS {
+        return Ok(None);
+    }
+    let distances = information_metric(&quantise(&used.tactile, &settings.quantise));
+    let distances = scaled(&distances, settings.map.of);
+    // Pressures that tell nothing apart have no map, which is no mistake.
+    let Ok(map) = ClassicalScaling::new(&distances, DIMS).and_then(|scaling| scaling.coordinates(DIMS))
+    else {
+        return Ok(None);
+    };
+    // A sensor that was left out has no place.
+    let mut coordinates = vec![f64::NAN; sensors * DIMS];
+    for (at, sensor) in used.sensors.into_iter().enumerate() {
+        coordinates[sensor * DIMS..][..DIMS].copy_from_slice(&map.coordinates[at * DIMS..][..DIMS]);
+    }
+    Ok(Some(BodyMap { dims: DIMS, coordinates }))
+}
