@@ -6,10 +6,12 @@ bodies (default: results/). It updates
 
 - README.md: the table between <!-- claims --> and <!-- /claims -->, from claims.csv of both experiments;
 - docs/results.md: the tables of both experiments, from their claims.md;
-- docs/shown/: two figures, and the tables and pictures of the studies;
+- docs/shown/: claims, tables and pictures of both experiments, and those of the studies;
 - docs/sensitivity.md, ablation.md, step.md, multiverse.md, mixing.md and bodies.md: the pages of the studies;
 - DEVIATIONS.md: the table of open settings, from paper.toml, sensitivity.toml and the search that is
-  shown. It needs no run.
+  shown. It needs no run;
+- docs/claims.md: the paper's sentences, claims and verdicts, from claims.toml and docs/shown. It needs no run;
+- article/values.toml: the numbers of the article, from docs/shown. It needs no run.
 
 What RESULTS does not hold is skipped, with a line on standard error. Needs Python 3.11, and no packages.
 """
@@ -20,6 +22,7 @@ import json
 import pathlib
 import re
 import shutil
+import subprocess
 import sys
 import tomllib
 
@@ -50,6 +53,9 @@ def main():
         except Skip as reason:
             skip(step, str(reason))
     deviations()
+    for script in ["reproduce/claims.py", "article/values.py"]:
+        if status := subprocess.run([sys.executable, ROOT / script]).returncode:
+            sys.exit(status)
 
 
 class Skip(Exception):
@@ -141,18 +147,19 @@ def source(results):
 
 
 def experiment_1(results):
-    experiment(results / "exp1", "fig10b-tree.svg")
+    experiment(results / "exp1", ["fig07-parts", "fig08a-ari-baselines", "fig08b-ari", "fig10a-tree-baseline", "fig10b-tree"])
 
 
 def experiment_2(results):
-    experiment(results / "exp2", "fig11b-tree.svg")
+    experiment(results / "exp2", ["fig11a-ari", "fig11b-tree"])
 
 
-def experiment(folder, figure):
-    """docs/results.md: all claims of an experiment; and its picture."""
+def experiment(folder, figures):
+    """docs/results.md: all claims of an experiment; and its figures, each a table and a picture."""
     manifest(folder)
     table = (folder / "claims.md").read_text().strip()
-    copy([folder / "figures" / figure], SHOWN)
+    pairs = [folder / "figures" / f"{name}.{kind}" for name in figures for kind in ["csv", "svg"]]
+    copy([folder / "claims.csv", folder / "manifest.json", *pairs], SHOWN / folder.name)
     between_marks(ROOT / "docs" / "results.md", folder.name, table)
 
 
