@@ -1,0 +1,370 @@
+#!/usr/bin/env python3
+"""Take the numbers of the article from the committed results: article/values.py [--check]
+
+It writes article/values.toml: each number that content.typ names, in the words in which it is printed, with the file that it
+comes from; and all claims, for the table. With --check it writes nothing, and ends with status 1 if values.toml is not what it
+would write. Where the text says something of the numbers in words ("below the range"), `says` states it here, so that new
+results which contradict the text end in an error and not in a wrong article. Needs Python 3.11, and no packages.
+"""
+
+import csv
+import gzip
+import io
+import pathlib
+import sys
+import tomllib
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+TARGET = ROOT / "article" / "values.toml"
+VERDICTS = ["reproduced", "not reproduced", "not testable"]
+
+values = {}
+broken = []
+
+
+def main():
+    settings = tomllib.loads(read("reproduce/paper.toml"))
+    published = {claim["id"]: claim for claim in tomllib.loads(read("reproduce/published.toml"))["claim"]}
+    stated(settings, published)
+    claims = experiments(published)
+    dimensions()
+    coordinations()
+    search(published)
+    multiverse(published)
+    ablation()
+    step()
+    mixing()
+    if broken:
+        sys.exit("\n".join(f"article/content.typ says: {words}; the results do not. Change the text" for words in broken))
+    text = written(claims)
+    if "--check" not in sys.argv[1:]:
+        TARGET.write_text(text)
+    elif not TARGET.exists() or TARGET.read_text() != text:
+        sys.exit("article/values.toml is not what the committed results give; run article/values.py and read the article anew")
+
+
+def read(name):
+    return (ROOT / name).read_text()
+
+
+def table(name):
+    """Rows of a committed table, packed or not."""
+    path = ROOT / name
+    text = gzip.decompress(path.read_bytes()).decode() if path.suffix == ".gz" else path.read_text()
+    return list(csv.DictReader(io.StringIO(text)))
+
+
+def value(name, text, source):
+    assert name not in values, name
+    values[name] = (str(text), source)
+
+
+def says(words, holds):
+    """What the text says of its numbers in words."""
+    if not holds:
+        broken.append(words)
+
+
+def percent(number, digits=1):
+    """A rate as a percentage, without decimals if it is 0 or 1."""
+    number = 100 * float(number)
+    return f"{number:.0f} %" if number in (0, 100) else f"{number:.{digits}f} %"
+
+
+def percents(low, high, digits=1):
+    """A range of rates."""
+    return f"{percent(low, digits).removesuffix(' %')} to {percent(high, digits)}"
+
+
+def points(number):
+    """A difference of rates, in percentage points."""
+    return f"{abs(100 * float(number)):.0f}".replace("-", "−")
+
+
+# ---- What the paper states
+
+
+def stated(settings, published):
+    paper, claims = "reproduce/paper.toml", "reproduce/published.toml"
+    skin, experiment = settings["skin"], settings["experiment"]
+    value("sensors", 5 * (skin["around"] * skin["along"] + skin["caps"]), paper)
+    value("duration", f"{settings['physics']['duration']:,.0f}", paper)
+    value("interval", settings["sense"]["interval"], paper)
+    value("epoch", settings["motion"]["epoch"], paper)
+    value("step", settings["physics"]["step"], paper)
+    value("epoch-seconds", f"{settings['motion']['epoch'] * settings['physics']['step']:.0f}", paper)
+    value("levels", settings["quantise"]["levels"], paper)
+    value("chains", settings["schema"]["chains"], paper)
+    value("sweeps", settings["schema"]["sweeps"], paper)
+    value("bodies", experiment["simulations"], paper)
+    value("seed", experiment["seed"], paper)
+    value("length", settings["agent"]["part_length"], paper)
+    value("radius", settings["agent"]["part_radius"], paper)
+    value("gap", settings["agent"]["gap"], paper)
+    value("authors-settings", len(settings["schema"]["authors"]), paper)
+    value("open", sum("ours" in line.partition("#")[2] for line in read(paper).splitlines() if "=" in line), paper)
+    headline = published["tree-accuracy"]
+    value("published", headline["wording"], claims)
+    value("accepted", percents(*headline["accept"]), claims)
+    value("counts", " and ".join(f"{right}/{all}" for right, all in headline["possible_counts"]), claims)
+    value("ari-published", published["ari-unknown-number"]["accept"][0], claims)
+    value("counts-least", headline["possible_counts"][0][1], claims)
+    value("claims", len(published), claims)
+
+
+# ---- Both experiments
+
+
+def experiments(published):
+    """Values of single claims, and the rows of the table of all of them."""
+    rows = {}
+    for experiment in ["exp1", "exp2"]:
+        source = f"docs/shown/{experiment}/claims.csv"
+        for row in table(source):
+            if row["counting"] == "all-draws":
+                rows.setdefault((row["id"], row["reading"]), (row, source))
+    code, equations = rows["tree-accuracy", "authors-code"], rows["tree-accuracy", "equations"]
+    low, high = published["tree-accuracy"]["accept"]
+    for name, (row, source) in {"code": code, "equations": equations}.items():
+        value(f"tree-{name}", percent(row["value"]), source)
+        value(f"tree-{name}-interval", percents(row["low"], row["high"]), source)
+        value(f"tree-{name}-n", f"{int(row['n']):,}", source)
+        value(f"tree-{name}-single", percents(row["lowest"], row["highest"]), source)
+    says("the tree accuracy is below the range by the code", float(code[0]["value"]) < low)
+    says("the tree accuracy is above the range by the equations", float(equations[0]["value"]) > high)
+    says("both intervals reach the range", float(code[0]["high"]) > low and float(equations[0]["low"]) < high)
+    rate = published["tree-accuracy"]["published"]
+    outside = float(code[0]["high"]) < rate < float(equations[0]["low"])
+    says("both intervals leave the published rate out", outside)
+    bodies = code[0]
+    value("one-body", f"{round(float(bodies['bodies_share']) * int(bodies['bodies']))} of {bodies['bodies']}", code[1])
+    row, source = next(pair for key, pair in rows.items() if key[0] == "best-coordination")
+    value("one-body-all", round(float(row["bodies_together"]) * int(row["bodies"])), source)
+    simple(rows)
+    main = {id: row for (id, reading), (row, _) in rows.items() if (id, reading) != ("tree-accuracy", "equations")}
+    counts = [sum(row["verdict"] == verdict for row in main.values()) for verdict in VERDICTS]
+    for verdict, count in zip(VERDICTS, counts):
+        value(verdict.replace(" ", "-"), count, "docs/shown/*/claims.csv")
+    says("most of the other claims are reproduced", counts[0] > (len(main) - 1) / 2)
+    return [claim_row(row, published[id]) for (id, _), (row, _) in rows.items()]
+
+
+def simple(rows):
+    """Claims that the text names by their value alone, with interval and range where it needs them."""
+    authors = {id: pair for (id, reading), pair in rows.items() if reading == "authors-code"}
+
+    def take(name, id, column="value", shown=percent):
+        row, source = authors[id]
+        value(name, shown(row[column]), source)
+
+    take("prim", "baseline-tree")
+    row, source = authors["baseline-tree"]
+    value("prim-interval", percents(row["low"], row["high"]), source)
+    value("prim-n", f"{int(row['n']):,}", source)
+    take("parts-worst", "number-of-parts", shown=lambda number: f"{float(number):.1f}")
+    value("parts-worst-where", authors["number-of-parts"][0]["found"].removeprefix("worst: "), authors["number-of-parts"][1])
+    take("ari-lowest", "ari-unknown-number", shown=lambda number: f"{float(number):.2f}")
+    take("ari-p", "ari-over-coordination", shown=lambda number: f"{float(number):.2f}")
+    take("first-dimension", "first-dimension", shown=lambda number: f"{float(number):.0f}")
+    take("best-dimension", "best-dimension", shown=lambda number: f"{float(number):.0f}")
+    take("best-p", "best-coordination", shown=lambda number: f"{float(number):g}")
+    take("p-value", "tree-depends-on-coordination", shown=lambda number: f"{float(number):.2f}")
+    verdicts = {id: row["verdict"] for id, (row, _) in authors.items()}
+    for id in ["baseline-tree", "tree-low-dimensions", "first-dimension", "best-dimension", "best-coordination"]:
+        says(f"{id} is reproduced", verdicts[id] == "reproduced")
+    for id in ["number-of-parts", "ari-unknown-number", "ari-distribution", "tree-depends-on-coordination"]:
+        says(f"{id} is not reproduced", verdicts[id] == "not reproduced")
+
+
+def claim_row(row, claim):
+    """The cells of a claim in the table of the article."""
+    unit = row["unit"]
+    cell = lambda text: shown(text, unit)
+    reading = {"authors-code": "code", "equations": "equations"}[row["reading"]] if row["id"] == "tree-accuracy" else ""
+    accepted = (row["accepted_low"], row["accepted_high"])
+    return {
+        "claim": claim["statement"] + (f" ({reading})" if reading else ""),
+        "place": claim["place"].removeprefix("sections ").removeprefix("section "),
+        "published": row["wording"],
+        "reproduced": cell(row["value"]),
+        "interval": span((row["low"], row["high"]), unit),
+        "accepted": span(accepted, unit),
+        "verdict": row["verdict"],
+    }
+
+
+def span(ends, unit):
+    if not all(ends):
+        return ""
+    low, high = (shown(end, unit) for end in ends)
+    if low == high:
+        return low
+    return f"{low.removesuffix(' %')} to {high}"
+
+
+def shown(text, unit):
+    if not text:
+        return ""
+    number = float(text)
+    if unit == "rate":
+        return percent(number)
+    if unit == "p-value":
+        return "< 0.001" if 0 < number < 0.001 else f"{number:.2g}"
+    return f"{number:.2f}" if unit == "ari" else f"{number:.3g}"
+
+
+def rates(source, key):
+    """Tree accuracy of DPGMM-LJ over one axis of a figure."""
+    return {
+        float(row[key]): float(row["value"])
+        for row in table(source)
+        if row["counting"] == "all-draws" and row["method"] == "dpgmm-lj" and row["value"]
+    }
+
+
+def dimensions():
+    source = "docs/shown/exp1/fig10b-tree.csv"
+    found = rates(source, "dimension")
+    for d in [5, 8, 9, 11]:
+        value(f"tree-d{d}", percent(found[d], 0), source)
+    says("the tree accuracy rises from d = 5 to d = 11", found[5] < found[8] < found[9] < found[11])
+    parts = "docs/shown/exp1/fig07-parts.csv"
+    means = {int(row["dimension"]): float(row["mean"]) for row in table(parts) if row["counting"] == "all-draws"}
+    value("parts-d14", f"{means[14]:.1f}", parts)
+    says("there are too many parts at d = 14 too, but fewer than at the worst d", 5 < means[14] < max(means.values()))
+
+
+def coordinations():
+    source = "docs/shown/exp2/fig11b-tree.csv"
+    found = rates(source, "coordination")
+    small = [rate for p, rate in found.items() if p <= 0.4]
+    value("small-p", percents(min(small), max(small), 0), source)
+    says("the tree accuracy is highest at p = 0.9", max(found, key=found.get) == 0.9)
+
+
+# ---- The studies
+
+
+def search(published):
+    claims = {name: table(f"docs/shown/{name}/scores.csv") for name in ["screen", "twenty", "readings"]}
+    screen, source = claims["screen"], "docs/shown/screen/scores.csv"
+    resolved = [row for row in screen if row["resolved"] == "true"]
+    value("screened", f"{len(screen):,}", source)
+    value("screened-resolved", f"{len(resolved):,}", source)
+    value("screened-tree", sum("tree-accuracy" in row["hold"].split() for row in resolved), source)
+    chains = [row for row in resolved if "morphology = chain" in row["settings"]]
+    others = [row for row in resolved if row not in chains]
+    for name, rows in {"chains": chains, "others": others}.items():
+        held = sum("tree-accuracy" in row["hold"].split() for row in rows)
+        value(f"screened-{name}", f"{held} of {len(rows):,}", source)
+    for name in ["twenty", "readings"]:
+        value(name, len(claims[name]), f"docs/shown/{name}/scores.csv")
+    rounds = tomllib.loads(read("reproduce/search.toml"))["round"]
+    value("search-bodies", rounds[-1]["settings"]["experiment"]["simulations"], "reproduce/search.toml")
+    winner = claims["readings"][0]
+    source = "docs/shown/readings/credits.csv"
+    rate = next(r for r in table(source) if r["candidate"] == winner["candidate"] and r["claim"] == "tree-accuracy")
+    value("winner-tree", percent(rate["value"]), source)
+    value("winner-held", winner["satisfied"], "docs/shown/readings/scores.csv")
+    value("scored", winner["terms"], "docs/shown/readings/scores.csv")
+    says("the winner has the published tree accuracy, at the edge", float(rate["value"]) <= published["tree-accuracy"]["accept"][0] + 0.01)
+    both = sum({"tree-accuracy", "number-of-parts"} <= set(row["hold"].split()) for rows in claims.values() for row in rows if row["resolved"] == "true")
+    value("tree-and-parts", both, "docs/shown/{screen,twenty,readings}/scores.csv")
+
+
+def multiverse(published):
+    folder = "docs/shown/multiverse"
+    low, high = published["tree-accuracy"]["accept"]
+    source = f"{folder}/multiverse.csv.gz"
+    rows = [row for row in table(source) if row["claim"] == "tree-accuracy"]
+    found = [float(row["value"]) for row in rows if row["value"]]
+    value("universes", f"{len(rows):,}", source)
+    value("universes-none", len(rows) - len(found), source)
+    value("universes-below", sum(rate < low for rate in found), source)
+    value("universes-zero", sum(rate == 0 for rate in found), source)
+    value("universes-above", sum(rate > high for rate in found), source)
+    says("no specification is within the range", all(rate < low or rate > high for rate in found))
+    source = f"{folder}/specifications.csv.gz"
+    rows = table(source)
+    value("universes-failed", sum(row["failed"] != "0" for row in rows), source)
+    value("universes-resolved", sum(row["resolved"] == "true" for row in rows), source)
+    value("movements", len({row["movement"] for row in rows}), source)
+    source = f"{folder}/shares.csv"
+    shares = {row["claim"]: row for row in table(source) if row["group"] == "all"}
+    resolved = {row["claim"]: row for row in table(source) if row["group"] == "resolved"}
+    changes = [float(row["share"]) - float(shares[claim]["share"]) for claim, row in resolved.items()]
+    says("shares among resolved specifications hardly differ", max(map(abs, changes)) < 0.03)
+    for name, claim in {"tree": "tree-accuracy", "parts": "number-of-parts", "ari": "ari-over-coordination", "p": "best-coordination"}.items():
+        row = shares[claim]
+        if name != "tree":  # which the text gives as a count
+            value(f"share-{name}", percent(row["share"]), source)
+        value(f"share-{name}-interval", percents(row["low"], row["high"]), source)
+    joint, source = table(f"{folder}/joint.csv")[0], f"{folder}/joint.csv"
+    value("joint-expected", percent(joint["expected"]), source)
+    value("joint-n", joint["n"], source)
+    source = "docs/shown/multiverse-held-out/shares.csv"
+    other = {row["claim"]: row for row in table(source) if row["group"] == "all"}
+    value("held-out", other["tree-accuracy"]["n"], source)
+    inside = [float(row["low"]) <= float(other[claim]["share"]) <= float(row["high"]) for claim, row in shares.items()]
+    value("held-out-inside", f"{sum(inside)} of {len(inside)}", source)
+    source = f"{folder}/variance.csv"
+    single = [row for row in table(source) if row["claim"] == "tree-accuracy" and not row["with"]]
+    first = max(single, key=lambda row: float(row["share"]))
+    prim = next(row for row in table(source) if (row["claim"], row["factor"], row["with"]) == ("baseline-tree", "shape", ""))
+    value("variance-shape", percent(prim["share"]), source)
+    value("variance-factor", first["factor"], source)
+    value("variance-share", percent(first["share"]), source)
+    says("no single choice decides a fifth of the variance of the tree accuracy", float(first["share"]) < 0.2)
+
+
+def ablation():
+    source = "docs/shown/ablation/comparison.csv"
+    changes = {row["configuration"]: row for row in table(source) if row["claim"] == "tree-accuracy"}
+    for name, configuration in {"smallest": "parts of 2 sensors or more", "prior": "the code's own prior"}.items():
+        row = changes[configuration]
+        value(f"ablation-{name}", points(row["change"]), source)
+        value(f"ablation-{name}-interval", f"{points(row['change_high'])} to {points(row['change_low'])}", source)
+        says(f"{configuration}: the tree accuracy falls by more than its interval", float(row["change_high"]) < 0)
+    departures = [row for name, row in changes.items() if row["change"] and name not in ["equations", "the code's own prior"]]
+    clear = [row["configuration"] for row in departures if not float(row["change_low"]) <= 0 <= float(row["change_high"])]
+    says("no other departure changes the tree accuracy by more than its interval", clear == ["parts of 2 sensors or more"])
+    value("ablation-bodies", max(int(row["simulations"]) for row in table(source)), source)
+
+
+def step():
+    source = "docs/shown/step/comparison.csv"
+    rows = [row for row in table(source) if row["change"]]
+    inside = [float(row["change_low"]) <= 0 <= float(row["change_high"]) for row in rows if row["change_low"]]
+    prim = next(row for row in rows if row["claim"] == "baseline-tree")
+    value("step-prim", points(prim["change"]), source)
+    value("step-bodies", prim["simulations"], source)
+    says("only the claim on DPGMM + Prim changes by more than its interval", float(prim["change_low"]) > 0 and sum(inside) == len(inside) - 1)
+
+
+def mixing():
+    source = "docs/shown/mixing/bodies-chains.csv"
+    rows = [row for row in table(source) if row["sweeps"] == "100"]
+    for d in [6, 9, 14]:
+        exact = [row["exact"] == "true" for row in rows if row["dimension"] == str(d)]
+        value(f"mixed-d{d}", percent(sum(exact) / len(exact), 0), source)
+    source = "docs/shown/mixing/bodies-posterior.csv"
+    for d in [6, 14]:
+        exact = [row for row in table(source) if row["exact"] == "true" and row["dimension"] == str(d)]
+        right = sum(row["tree_right"] == "true" for row in exact)
+        value(f"mixed-tree-d{d}", f"{right} of {len(exact)}", source)
+
+
+# ---- The file
+
+
+def written(claims):
+    quote = lambda text: '"' + text.replace("\\", "\\\\").replace('"', '\\"') + '"'
+    lines = ["# Made by article/values.py from the committed results. Do not edit.", ""]
+    for name, (text, source) in sorted(values.items()):
+        lines.append(f"{name} = {{ text = {quote(text)}, from = {quote(source)} }}")
+    for row in claims:
+        lines += ["", "[[table]]", *(f"{key} = {quote(text)}" for key, text in row.items())]
+    return "\n".join(lines) + "\n"
+
+
+main()
