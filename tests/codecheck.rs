@@ -1,0 +1,168 @@
+//! `codecheck.yml` names what `reproduce/codecheck.toml` has rerun, and `reproduce/codecheck.py` tells results that agree from
+//! those that do not. The runs of codecheck.py are skipped with a message where there is no Python 3.11.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+use toml::{Table, Value};
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn rules() -> Table {
+    fs::read_to_string(root().join("reproduce/codecheck.toml")).unwrap().parse().unwrap()
+}
+
+fn list<'a>(table: &'a Value, key: &str) -> Vec<&'a Value> {
+    table.get(key).and_then(Value::as_array).map_or_else(Vec::new, |values| values.iter().collect())
+}
+
+fn text<'a>(table: &'a Value, key: &str) -> Option<&'a str> {
+    table.get(key).and_then(Value::as_str)
+}
+
+/// Name of the file at the end of a path.
+fn name(path: &str) -> &str {
+    path.rsplit('/').next().unwrap()
+}
+
+/// Where a rerun writes each file of a part, within the results, and where the committed one is.
+fn files(part: &Value) -> Vec<(String, String)> {
+    let folder = |key: &str| text(part, key).unwrap_or_default();
+    let both = list(part, "table").into_iter().chain(list(part, "picture"));
+    both.map(|file| {
+        let made = text(file, "made").unwrap();
+        let committed = text(file, "committed").unwrap_or_else(|| name(made));
+        (format!("{}/{made}", folder("made")), format!("{}/{committed}", folder("committed")))
+    })
+    .collect()
+}
+
+#[test]
+fn the_manifest_is_what_is_rerun() {
+    let rules = rules();
+    let parts = rules["part"].as_array().unwrap();
+    let compared = parts.iter().flat_map(files).map(|(_, committed)| committed);
+    let by_themselves = parts.iter().flat_map(|part| list(part, "compares_itself"));
+    let rerun: BTreeSet<String> =
+        compared.chain(by_themselves.map(|file| file.as_str().unwrap().to_owned())).collect();
+    let manifest = fs::read_to_string(root().join("codecheck.yml")).unwrap();
+    assert!(manifest.starts_with("---\n"), "the explicit document marker");
+    let named: BTreeSet<String> =
+        manifest.lines().filter_map(|line| line.strip_prefix("  - file: ")).map(str::to_owned).collect();
+    assert_eq!(named, rerun);
+    assert!(named.iter().all(|file| root().join(file).is_file()), "{named:?}");
+}
+
+#[test]
+fn commands_exist() {
+    for part in rules()["part"].as_array().unwrap() {
+        let command = list(part, "command")[0].as_str().unwrap();
+        assert!(root().join(command).is_file(), "{command}");
+    }
+}
+
+/// A folder with the committed results of experiment 2, once as committed and once as if made anew.
+fn rerun() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let put = |from: &str, to: &str| {
+        let to = folder.path().join(to);
+        fs::create_dir_all(to.parent().unwrap()).unwrap();
+        fs::copy(root().join(from), to).unwrap();
+    };
+    for file in ["reproduce/codecheck.py", "reproduce/codecheck.toml", "docs/shown/exp2/manifest.json"] {
+        put(file, file);
+    }
+    let rules = rules();
+    let part =
+        rules["part"].as_array().unwrap().iter().find(|part| text(part, "name") == Some("exp2")).unwrap();
+    for (made, committed) in files(part) {
+        put(&committed, &committed);
+        put(&committed, &made);
+    }
+    folder
+}
+
+/// Status and what is printed; None without Python 3.11.
+fn compare(folder: &Path, only: &str) -> Option<(Option<i32>, String)> {
+    let modern = Command::new("python3").args(["-c", "import tomllib"]).output();
+    if !modern.is_ok_and(|output| output.status.success()) {
+        eprintln!("skipped: Python 3.11 is missing");
+        return None;
+    }
+    let script = folder.join("reproduce/codecheck.py");
+    let output =
+        Command::new("python3").arg(script).args(["--compare-only", "--only", only]).output().unwrap();
+    let said = [output.stdout, output.stderr].concat();
+    Some((output.status.code(), String::from_utf8(said).unwrap()))
+}
+
+/// Changes one file of the rerun.
+fn change(folder: &Path, file: &str, from: &str, to: &str) {
+    let path = folder.join("results/exp2").join(file);
+    let text = fs::read_to_string(&path).unwrap();
+    assert!(text.contains(from), "{file} has no {from}");
+    fs::write(path, text.replace(from, to)).unwrap();
+}
+
+#[test]
+fn results_agree_if_they_are_the_same_or_within_their_tolerance() {
+    let folder = rerun();
+    let Some((status, said)) = compare(folder.path(), "exp2") else { return };
+    assert_eq!(status, Some(0), "{said}");
+    assert!(said.contains("5 same bytes, 0 within tolerance"), "{said}");
+
+    // The rate at p = 0.9: within its interval, and beyond any.
+    change(folder.path(), "figures/fig11b-tree.csv", "0.6523545706371191", "0.6623545706371191");
+    let (status, said) = compare(folder.path(), "exp2").unwrap();
+    assert_eq!(status, Some(0), "{said}");
+    assert!(said.contains("4 same bytes, 1 within tolerance"), "{said}");
+    change(folder.path(), "figures/fig11b-tree.csv", "0.6623545706371191", "0.0123545706371191");
+    let (status, said) = compare(folder.path(), "exp2").unwrap();
+    assert_eq!(status, Some(1), "{said}");
+    assert!(
+        said.contains("differs") && said.contains("0.9/14: 0.0123545706371191, committed 0.652"),
+        "{said}"
+    );
+}
+
+#[test]
+fn accepted_ranges_are_the_same_and_no_file_is_missing() {
+    let folder = rerun();
+    let Some((_, said)) = compare(folder.path(), "exp2") else { return };
+    assert!(said.ends_with("0 differs\n"), "{said}");
+    change(folder.path(), "claims.csv", ",0.746,0.946,", ",0.6,0.946,");
+    fs::remove_file(folder.path().join("results/exp2/figures/fig11a-ari.csv")).unwrap();
+    let (status, said) = compare(folder.path(), "exp2").unwrap();
+    assert_eq!(status, Some(1), "{said}");
+    assert!(said.contains("accepted_low is '0.6', committed '0.746'") && said.contains("missing"), "{said}");
+}
+
+/// The witness says that the machine is of the same kind, where nothing but the same bytes agrees.
+#[test]
+fn on_a_machine_of_the_same_kind_bytes_are_the_same() {
+    let folder = rerun();
+    let witness = folder.path().join("results/exp2/p-0.9/simulation-1/body-map.npy");
+    fs::create_dir_all(witness.parent().unwrap()).unwrap();
+    fs::write(&witness, "map").unwrap();
+    let manifest = folder.path().join("docs/shown/exp2/manifest.json");
+    let hash = "60be9861750facbfad8758254a2f76c0cfe78d54459a3bc187d49b1401fcd8e8";
+    let hashed = r#"{"outputs": [{"file": "p-0.9/simulation-1/body-map.npy", "sha256": "HASH"}]}"#;
+    fs::write(&manifest, hashed.replace("HASH", hash)).unwrap();
+    change(folder.path(), "figures/fig11b-tree.csv", "0.6523545706371191", "0.6523545706371192");
+    let Some((status, said)) = compare(folder.path(), "exp2") else { return };
+    assert_eq!(status, Some(1), "{said}");
+    assert!(said.contains("on a machine of the same kind the bytes must be the same"), "{said}");
+    fs::write(&witness, "another map").unwrap();
+    assert_eq!(compare(folder.path(), "exp2").unwrap().0, Some(0));
+}
+
+#[test]
+fn an_unknown_part_is_one_line_and_status_2() {
+    let Some((status, said)) = compare(root(), "exp3") else { return };
+    assert_eq!((status, said.lines().count()), (Some(2), 1), "{said}");
+    assert!(said.contains("there is no part 'exp3'; the parts are inference, exp1"), "{said}");
+}
