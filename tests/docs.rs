@@ -21,7 +21,14 @@ fn read(name: &str) -> String {
 
 /// The pages that a reader comes to.
 fn pages() -> Vec<PathBuf> {
-    let names = ["README.md", "DEVIATIONS.md", "tests/README.md", "benches/README.md"];
+    let names = [
+        "README.md",
+        "CONTRIBUTING.md",
+        "CHANGELOG.md",
+        "DEVIATIONS.md",
+        "tests/README.md",
+        "benches/README.md",
+    ];
     let docs = fs::read_dir(root().join("docs")).unwrap().map(|entry| entry.unwrap().path());
     let docs = docs.filter(|path| path.extension().is_some_and(|extension| extension == "md"));
     names.into_iter().map(|name| root().join(name)).chain(docs).collect()

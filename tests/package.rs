@@ -1,0 +1,90 @@
+//! The packages hold what a build needs and little more, and nothing that they depend on needs a younger Rust than they say.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+use serde_json::Value;
+
+/// Largest package, in bytes before it is compressed.
+const BYTES: u64 = 2_000_000;
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn cargo(arguments: &str) -> String {
+    let mut command = Command::new(env!("CARGO"));
+    let output = command.current_dir(root()).args(arguments.split(' ')).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+fn packaged(package: &str) -> BTreeSet<String> {
+    let list = cargo(&format!("package --list --allow-dirty --offline --package {package}"));
+    list.lines().map(str::to_owned).collect()
+}
+
+/// Sum of the sizes of files that are in the repository.
+fn bytes(files: &BTreeSet<String>, folder: &Path) -> u64 {
+    files.iter().filter_map(|file| fs::metadata(folder.join(file)).ok()).map(|file| file.len()).sum()
+}
+
+/// Files that a source file takes in, by their path in the package.
+fn taken_in(file: &str) -> Vec<String> {
+    let text = fs::read_to_string(root().join(file)).unwrap();
+    let names = text.split("include_str!(\"").skip(1).filter_map(|rest| rest.split_once('"')).map(|it| it.0);
+    let folder = Path::new(file).parent().unwrap();
+    let path = |name: &str| root().join(folder).join(name).canonicalize().unwrap();
+    let within = |name: &str| path(name).strip_prefix(root().canonicalize().unwrap()).unwrap().to_owned();
+    names.map(|name| within(name).display().to_string()).collect()
+}
+
+#[test]
+fn the_packages_hold_what_a_build_needs_and_little_more() {
+    let of_program = packaged("bodyschema");
+    let sources = of_program.iter().filter(|file| file.starts_with("src/") && file.ends_with(".rs"));
+    let needed: Vec<String> = sources.flat_map(|file| taken_in(file)).collect();
+    assert!(needed.contains(&"reproduce/paper.toml".to_owned()), "{needed:?}");
+    let missing: Vec<&String> = needed.iter().filter(|file| !of_program.contains(*file)).collect();
+    assert!(missing.is_empty(), "{missing:?}");
+
+    let of_bindings = packaged("ode-sys");
+    for (files, folder) in [(&of_program, root().to_owned()), (&of_bindings, root().join("ode-sys"))] {
+        for file in ["Cargo.toml", "README.md", "LICENSE-MIT", "LICENSE-APACHE", "build.rs", "src/lib.rs"] {
+            assert!(files.contains(file), "{file}: {files:?}");
+        }
+        assert!(bytes(files, &folder) < BYTES, "{} bytes", bytes(files, &folder));
+    }
+    let others = ["docs/", "tests/", "fuzz/", "article/", "benches/", "examples/"];
+    let superfluous =
+        |file: &&String| !needed.contains(file) && others.iter().any(|other| file.starts_with(other));
+    assert_eq!(of_program.iter().find(superfluous), None);
+    assert!(superfluous(&&"docs/files.md".to_owned()));
+}
+
+/// A version of Rust as numbers; 0 where none is stated.
+fn rust_version(package: &Value) -> Vec<u32> {
+    let stated = package["rust_version"].as_str().unwrap_or("0");
+    stated.split('.').map(|number| number.parse().unwrap()).collect()
+}
+
+/// Names of packages that need a younger Rust than `oldest`.
+fn younger(packages: &[Value], oldest: &[u32]) -> Vec<String> {
+    let needs_younger = |package: &&Value| rust_version(package) > oldest.to_vec();
+    packages.iter().filter(needs_younger).map(|package| package["name"].to_string()).collect()
+}
+
+/// Clippy sees what the code itself uses of the standard library (`incompatible_msrv`).
+#[test]
+fn no_dependency_needs_a_younger_rust() {
+    let text =
+        cargo("metadata --format-version 1 --locked --offline --filter-platform x86_64-unknown-linux-gnu");
+    let metadata: Value = serde_json::from_str(&text).unwrap();
+    let packages = metadata["packages"].as_array().unwrap();
+    let own = packages.iter().find(|package| package["name"] == "bodyschema").unwrap();
+    assert!(packages.len() > 50);
+    assert_eq!(younger(packages, &rust_version(own)), [""; 0]);
+    assert!(younger(packages, &[1, 70]).contains(&"\"bodyschema\"".to_owned()), "what is younger is seen");
+}
