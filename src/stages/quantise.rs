@@ -68,6 +68,11 @@ impl Symbols {
         self.values.chunks_exact(self.samples)
     }
 
+    /// The series of one sensor.
+    pub fn of(&self, sensor: usize) -> &[u8] {
+        &self.values[sensor * self.samples..][..self.samples]
+    }
+
     /// Sensors that show one symbol throughout, and so tell nothing.
     pub fn constant_sensors(&self) -> Vec<usize> {
         let constant = |series: &[u8]| series.iter().all(|symbol| *symbol == series[0]);

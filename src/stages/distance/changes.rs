@@ -34,9 +34,7 @@ impl<'a> Changes<'a> {
 
     /// Joint counts of two sensors.
     pub fn joint(&self, i: usize, j: usize, joint: &mut [u32]) {
-        let series =
-            |sensor: usize| &self.symbols.values[sensor * self.symbols.samples..][..self.symbols.samples];
-        let (first, second, levels) = (series(i), series(j), self.symbols.levels);
+        let (first, second, levels) = (self.symbols.of(i), self.symbols.of(j), self.symbols.levels);
         joint.fill(0);
         // Modulo 2³², in which the counts themselves are.
         let mut add = |x: u8, y: u8, time: u32| {

@@ -7,6 +7,7 @@ use rayon::prelude::*;
 
 use super::bit_planes::{self, BitPlanes, TILE};
 use super::changes::Changes;
+use super::stretches::Stretches;
 use crate::stages::quantise::Symbols;
 
 /// A symmetric matrix of distances with a zero diagonal.
@@ -32,26 +33,27 @@ pub const MAX_SENSORS: usize = 20_000;
 enum Counting<'a> {
     /// (N − 1)² passes over T bits.
     Planes(BitPlanes),
-    /// One step for each change of a symbol.
+    /// Two steps for each change of a symbol.
     Changes(Changes<'a>),
-    /// One pass over T symbols.
-    Symbols,
+    /// One pass over T bits, and a step for each time at which either symbol changes.
+    Stretches(Stretches<'a>),
 }
 
 impl<'a> Counting<'a> {
     /// That which takes the least time, by what was measured on processors of both kinds (`benches/README.md`).
     fn fastest(symbols: &'a Symbols) -> Self {
         // In times that a word of bit planes takes.
-        let change = if bit_planes::counts_by_eight() { 20 } else { 4 };
-        let changes = 2 * Changes::mean(symbols) * change;
+        let step = if bit_planes::counts_by_eight() { 20 } else { 4 };
+        let of_both = 2 * Changes::mean(symbols);
         let planes = (symbols.levels - 1).pow(2) * symbols.samples / 64;
-        let pass = symbols.samples * change * 2 / 3;
-        if planes <= changes.min(pass) {
+        let changes = of_both * step;
+        let stretches = (symbols.samples / 13 + of_both.min(symbols.samples) * 2 / 3) * step;
+        if planes <= changes.min(stretches) {
             Self::Planes(BitPlanes::new(symbols))
-        } else if changes <= pass {
+        } else if changes <= stretches {
             Self::Changes(Changes::new(symbols))
         } else {
-            Self::Symbols
+            Self::Stretches(Stretches::new(symbols))
         }
     }
 }
@@ -70,6 +72,9 @@ fn by(counting: &Counting, symbols: &Symbols) -> Distances {
         _ => symbols.series().map(|series| histogram(series, levels)).collect(),
     };
     let logarithms: Vec<f64> = (0..=symbols.samples).map(|count| libm::log2(count.max(1) as f64)).collect();
+    let logarithm = |count: &u32| logarithms[*count as usize];
+    let of_marginals: Vec<Vec<f64>> =
+        marginals.iter().map(|counts| counts.iter().map(logarithm).collect()).collect();
 
     let tiles: Vec<(usize, usize)> = (0..sensors)
         .step_by(TILE)
@@ -86,7 +91,7 @@ fn by(counting: &Counting, symbols: &Symbols) -> Distances {
             let mut distances = |count: &dyn Fn(usize, usize, &mut [u32])| -> Vec<f64> {
                 let metric = |(i, j)| {
                     count(i, j, &mut joint);
-                    metric_of_counts(&joint, &marginals[i], &marginals[j], &logarithms)
+                    metric_of_counts(&joint, &of_marginals[i], &of_marginals[j], &logarithms)
                 };
                 pairs(tile).map(metric).collect()
             };
@@ -96,7 +101,7 @@ fn by(counting: &Counting, symbols: &Symbols) -> Distances {
                     distances(&|i, j, joint| counted.joint(i, j, &marginals, joint))
                 }
                 Counting::Changes(changes) => distances(&|i, j, joint| changes.joint(i, j, joint)),
-                Counting::Symbols => distances(&|i, j, joint| count(symbols, i, j, joint)),
+                Counting::Stretches(stretches) => distances(&|i, j, joint| stretches.joint(i, j, joint)),
             }
         })
         .collect();
@@ -112,14 +117,21 @@ fn by(counting: &Counting, symbols: &Symbols) -> Distances {
 /// H(X|Y) + H(Y|X) from joint counts: Σ c_xy [(log₂ c_x − log₂ c_xy) + (log₂ c_y − log₂ c_xy)] / T.
 ///
 /// Every term is at least 0 and exactly 0 where a symbol tells the other, so that neither rounding nor
-/// cancellation can make a distance negative. `logarithms` has log₂ c for all c from 1 to T, and 0 for c = 0: T
-/// of them are found, not two for every cell of every pair.
-fn metric_of_counts(joint: &[u32], first: &[u32], second: &[u32], logarithms: &[f64]) -> f64 {
-    let log = |count: u32| logarithms[count as usize];
+/// cancellation can make a distance negative. `first` and `second` have the logarithms of the marginal counts; `logarithms`
+/// has log₂ c for all c from 1 to T, and 0 for c = 0: T of them are found, not one for every cell of every pair.
+fn metric_of_counts(joint: &[u32], first: &[f64], second: &[f64], logarithms: &[f64]) -> f64 {
     let mut sum = 0.0;
-    for (row, &x) in joint.chunks_exact(second.len()).zip(first) {
-        for (&both, &y) in row.iter().zip(second) {
-            sum += f64::from(both) * ((log(x) - log(both)) + (log(y) - log(both)));
+    for (row, x) in joint.chunks_exact(second.len()).zip(first) {
+        // Of many levels, most pairs never meet and add 0. They are left out without a branch, which no processor could foresee.
+        let (mut met, mut count) = ([0_u8; 256], 0);
+        for (symbol, &both) in (0..=u8::MAX).zip(row) {
+            met[count] = symbol;
+            count += usize::from(both > 0);
+        }
+        for &symbol in &met[..count] {
+            let (both, y) = (row[usize::from(symbol)], second[usize::from(symbol)]);
+            let log = logarithms[both as usize];
+            sum += f64::from(both) * ((x - log) + (y - log));
         }
     }
     sum / (logarithms.len() - 1) as f64
@@ -132,15 +144,6 @@ fn histogram(series: &[u8], levels: usize) -> Vec<u32> {
     counts
 }
 
-/// Joint counts of two sensors by one pass over their symbols, as equations 25 and 26 define them.
-fn count(symbols: &Symbols, i: usize, j: usize, joint: &mut [u32]) {
-    joint.fill(0);
-    let series = |sensor: usize| &symbols.values[sensor * symbols.samples..][..symbols.samples];
-    for (&x, &y) in series(i).iter().zip(series(j)) {
-        joint[usize::from(x) * symbols.levels + usize::from(y)] += 1;
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use rand::RngExt;
@@ -150,7 +153,8 @@ mod tests {
 
     fn random_symbols(sensors: usize, samples: usize, levels: usize) -> Symbols {
         let mut rng = stream(5, 1, "symbols", levels);
-        let mut values: Vec<u8> = (0..sensors * samples).map(|_| rng.random_range(0..levels as u8)).collect();
+        let mut values: Vec<u8> =
+            (0..sensors * samples).map(|_| rng.random_range(0..=(levels - 1) as u8)).collect();
         // Sensor 1 mostly copies sensor 0, and the last never changes.
         for t in 0..samples {
             if t % 7 != 0 {
@@ -159,6 +163,13 @@ mod tests {
             values[(sensors - 1) * samples + t] = 1;
         }
         Symbols { samples, levels, values }
+    }
+
+    /// Joint counts of two sensors as equations 25 and 26 define them.
+    fn count(symbols: &Symbols, i: usize, j: usize, joint: &mut [u32]) {
+        for (&x, &y) in symbols.of(i).iter().zip(symbols.of(j)) {
+            joint[usize::from(x) * symbols.levels + usize::from(y)] += 1;
+        }
     }
 
     /// Equations 23 and 24 as they are written.
@@ -182,13 +193,15 @@ mod tests {
 
     #[test]
     fn agrees_with_the_definition_however_it_counts() {
-        for (levels, samples) in [(2, 63), (4, 64), (5, 1000), (10, 129), (11, 500), (40, 500), (3, 1)] {
+        for (levels, samples) in
+            [(2, 63), (4, 64), (5, 1000), (10, 129), (11, 500), (40, 500), (256, 300), (3, 1)]
+        {
             let symbols = random_symbols(19, samples, levels);
             let distances = information_metric(&symbols);
             let all = [
                 Counting::Planes(BitPlanes::new(&symbols)),
                 Counting::Changes(Changes::new(&symbols)),
-                Counting::Symbols,
+                Counting::Stretches(Stretches::new(&symbols)),
             ];
             all.iter().for_each(|counting| assert_eq!(by(counting, &symbols), distances));
             for i in 0..19 {
@@ -204,8 +217,8 @@ mod tests {
 
     #[test]
     fn symbols_that_rarely_change_are_counted_by_their_changes() {
-        let mut symbols = random_symbols(19, 6400, 20);
-        assert!(matches!(Counting::fastest(&symbols), Counting::Symbols));
+        let mut symbols = random_symbols(19, 6400, 40);
+        assert!(matches!(Counting::fastest(&symbols), Counting::Stretches(_)));
         let slow = |(at, _): (usize, &u8)| symbols.values[at - at % 64];
         symbols.values = symbols.values.iter().enumerate().map(slow).collect();
         assert!(matches!(Counting::fastest(&symbols), Counting::Changes(_)));

@@ -5,5 +5,6 @@
 mod bit_planes;
 mod changes;
 mod information_metric;
+mod stretches;
 
 pub use self::information_metric::{Distances, MAX_SENSORS, information_metric};
