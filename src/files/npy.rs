@@ -2,10 +2,10 @@
 
 use std::fmt::Display;
 use std::fs::File;
-use std::io::{self, BufRead, BufReader};
+use std::io::{self, BufRead, BufReader, Read};
 use std::path::Path;
 
-use npyz::{DType, Deserialize, NpyFile, Order, TypeChar, WriterBuilder};
+use npyz::{DType, Deserialize, NpyFile, Order, TypeChar, TypeRead, WriterBuilder};
 
 use super::error::FileError;
 use super::whole::write_whole;
@@ -300,35 +300,44 @@ fn collect<S: Deserialize, T: Copy>(
 ) -> Result<Vec<T>, FileError> {
     /// Lines that are read at a time: enough to fill what the memory hands over at once.
     const LINES: usize = 64;
-    let length = npy.len() as usize;
-    let values = npy.data::<S>().map_err(|error| FileError::new(path, error))?;
-    let mut values = values.enumerate().map(|(at, value)| {
-        let value =
-            value.map_err(|error| FileError::new(path, format!("is truncated or damaged: {error}")))?;
-        convert(at, value)
-    });
-    if !transposed {
-        // Not by `collect`, which would not know the length, and take up to twice the memory.
-        let mut converted = Vec::with_capacity(length);
-        for value in values {
-            converted.push(value?);
+    /// Values that are read at a time where the order stays.
+    const VALUES: usize = 1 << 16;
+    let (length, width) = (npy.len() as usize, size_of::<S>());
+    let decoder = S::reader(&npy.dtype()).map_err(|error| FileError::new(path, error))?;
+    let damaged = |error: io::Error| FileError::new(path, format!("is truncated or damaged: {error}"));
+    let (mut file, mut bytes, mut done) = (npy.into_inner(), Vec::new(), 0);
+    // Adds the next values. Bytes are read many at a time, because to ask for each takes longer than to decode it.
+    let mut read = |count: usize, values: &mut Vec<T>| -> Result<(), FileError> {
+        bytes.resize(count * width, 0);
+        file.read_exact(&mut bytes).map_err(damaged)?;
+        for value in bytes.chunks_exact(width) {
+            values.push(convert(done, decoder.read_one(value).map_err(damaged)?)?);
+            done += 1;
         }
-        return Ok(converted);
+        Ok(())
+    };
+    if !transposed {
+        let mut values = Vec::with_capacity(length);
+        while values.len() < length {
+            read(VALUES.min(length - values.len()), &mut values)?;
+        }
+        return Ok(values);
     }
     let lines = length / line;
-    let mut converted = Vec::new();
+    let (mut values, mut band) = (Vec::new(), Vec::with_capacity(LINES.min(lines) * line));
     for first in (0..lines).step_by(LINES) {
         let count = LINES.min(lines - first);
-        let band: Vec<T> = values.by_ref().take(count * line).collect::<Result<_, _>>()?;
-        if converted.is_empty() {
-            converted = vec![band[0]; length];
+        band.clear();
+        read(count * line, &mut band)?;
+        if values.is_empty() {
+            values = vec![band[0]; length];
         }
         for at in 0..line {
-            let to = &mut converted[at * lines + first..][..count];
+            let to = &mut values[at * lines + first..][..count];
             to.iter_mut().zip(band[at..].iter().step_by(line)).for_each(|(to, value)| *to = *value);
         }
     }
-    Ok(converted)
+    Ok(values)
 }
 
 #[cfg(test)]
