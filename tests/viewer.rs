@@ -1,6 +1,7 @@
 //! The page of `bodyschema view` as a reader sees it, in headless Chromium with WebGL in software. Skipped with a message where
 //! there is no Chromium.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
@@ -21,108 +22,7 @@ coordination = 0.5
 ";
 
 /// Opens the page in a frame of each width, works with it as a reader does, and says what it sees as JSON in `seen`.
-const HARNESS: &str = r#"<!doctype html><meta charset="utf-8"><body><pre id="seen"></pre><script>
-const report = REPORT, wait = MOTION;
-// Whatever the page complains of, or loads, is written down before it begins.
-const watch = `<script>window.complaints = [];
-  addEventListener("error", event => complaints.push(String(event.message)));
-  addEventListener("securitypolicyviolation", event => complaints.push("loads " + event.blockedURI));
-  for (const kind of ["error", "warn"]) console[kind] = (...words) => complaints.push(words.join(" "));
-<\/script>`;
-const tap = (canvas, x, y) => {
-  const box = canvas.getBoundingClientRect(), view = canvas.ownerDocument.defaultView;
-  for (const kind of ["pointermove", "pointerdown", "pointerup", "click"]) {
-    const make = kind === "click" ? view.MouseEvent : view.PointerEvent;
-    canvas.dispatchEvent(new make(kind, { clientX: box.left + x, clientY: box.top + y, pointerId: 1, bubbles: true }));
-  }
-};
-const pixels = space => {
-  const gl = space.gl, all = new Uint8Array(4 * gl.drawingBufferWidth * gl.drawingBufferHeight);
-  gl.readPixels(0, 0, gl.drawingBufferWidth, gl.drawingBufferHeight, gl.RGBA, gl.UNSIGNED_BYTE, all);
-  return all;
-};
-const differing = (a, b) => a.reduce((count, x, at) => count + (x !== b[at]), 0);
-function work(page, window, width) {
-  const section = page.querySelector("section.viewer"), viewer = section.viewer, found = { width };
-  viewer.play(false);
-  const slider = section.querySelector(".time input"), spaces = [viewer.body, viewer.map].filter(space => space);
-  const shown = () => spaces.map(pixels);
-  const at = frame => {
-    slider.value = frame;
-    slider.dispatchEvent(new window.Event("input", { bubbles: true }));
-  };
-  at(10);
-  const before = shown();
-  at(40.5);
-  found.frame = viewer.frame;
-  found.clock = section.querySelector(".clock").textContent;
-  found.moved = before.map((old, space) => differing(old, pixels(spaces[space])));
-  if (viewer.body) {
-    // The sensor that the reader sees best.
-    const { canvas, eye, places } = viewer.body, { normals } = viewer.moved;
-    const facing = sensor => [0, 1, 2].reduce((sum, axis) => sum + eye[axis] * normals[3 * sensor + axis], 0);
-    const best = Array.from({ length: viewer.scene.sensors }, (_, sensor) => sensor).sort((a, b) => facing(b) - facing(a))[0];
-    const unmarked = shown();
-    tap(canvas, ...viewer.body.project(...places.subarray(3 * best, 3 * best + 3)).slice(0, 2));
-    found.tapped = viewer.marked;
-    const [here, there] = [viewer.body.places, viewer.map.places].map(all => [...all.subarray(3 * found.tapped, 3 * found.tapped + 3)]);
-    found.near = Math.hypot(...[0, 1, 2].map(axis => here[axis] - places[3 * best + axis]));
-    found.linked = unmarked.map((old, space) => differing(old, pixels(spaces[space])));
-    // A ring of black around the place of the sensor on the map.
-    const map = viewer.map, ratio = map.canvas.width / map.canvas.clientWidth, [x, y] = map.project(...there).map(length => length * ratio);
-    const all = pixels(map);
-    found.ring = 0;
-    for (let dx = -9; dx <= 9; dx++) for (let dy = -9; dy <= 9; dy++) {
-      const place = 4 * (Math.round(map.canvas.height - y + dy) * map.canvas.width + Math.round(x + dx));
-      found.ring += all[place] + all[place + 1] + all[place + 2] === 0;
-    }
-  } else {
-    const canvas = section.querySelector(".raster canvas"), box = canvas.getBoundingClientRect();
-    tap(canvas, box.width / 2, box.height / 2);
-    found.tapped = viewer.marked;
-  }
-  found.status = section.querySelector(".status").textContent;
-  section.querySelector(".trees [role=button]")?.dispatchEvent(new window.KeyboardEvent("keydown", { key: "Enter", bubbles: true }));
-  found.part = section.querySelector(".trees [aria-pressed=true]")?.getAttribute("aria-label") ?? "";
-  found.trees = [...section.querySelectorAll(".trees h3")].map(heading => heading.textContent);
-  found.colourings = [...section.querySelectorAll(".colouring option")].map(option => option.textContent);
-  const named = element => (element.getAttribute("aria-label") ?? element.labels?.[0]?.textContent ?? element.textContent).trim();
-  found.nameless = [...section.querySelectorAll("button, input, select, canvas, [role=button]")].filter(element => !named(element)).map(element => element.outerHTML);
-  found.scroll = page.documentElement.scrollWidth;
-  found.complaints = window.complaints;
-  found.loaded = window.performance.getEntriesByType("resource").map(entry => entry.name);
-  found.speed = wait ? 0 : viewer.measure(40);
-  // A machine that draws slowly draws less, as long as the body moves.
-  const widths = () => spaces.map(space => space.canvas.width / space.canvas.clientWidth);
-  const whole = widths();
-  found.detail = [60, 10, 10].map(speed => {
-    viewer.pace(speed);
-    viewer.draw();
-    return widths().every((width, at) => width === whole[at]);
-  });
-  viewer.play(false);
-  found.detail.push(widths().every((width, at) => width === whole[at]));
-  return found;
-}
-const frames = [375, 1280].map(width => {
-  const frame = document.createElement("iframe");
-  frame.style.cssText = `border:0;width:${width}px;height:1600px`;
-  frame.srcdoc = report.replace("<head>", "<head>" + watch);
-  document.body.append(frame);
-  return [frame, width];
-});
-// What happens before the end of this event is seen, even where time is not virtual.
-addEventListener("load", () => {
-  const begin = () => {
-    const seen = frames.map(([{ contentDocument, contentWindow }, width]) => {
-      const { playing } = contentDocument.querySelector("section.viewer").viewer;
-      return { playing, ...work(contentDocument, contentWindow, width) };
-    });
-    document.getElementById("seen").textContent = JSON.stringify(seen);
-  };
-  if (wait) setTimeout(begin, wait); else begin();
-});
-</script></body>"#;
+const HARNESS: &str = include_str!("support/viewer.html");
 
 #[derive(Debug, Deserialize)]
 struct Seen {
@@ -198,6 +98,12 @@ fn page(folder: &Path, arguments: &str) -> String {
     let page = fs::read_to_string(folder.join("page.html")).unwrap();
     assert!(page.len() < 3_000_000, "{arguments}: {} bytes", page.len());
     page
+}
+
+/// What a page shows.
+fn scenes(page: &str) -> serde_json::Value {
+    let (_, rest) = page.split_once("<script class=\"data\" type=\"application/json\">").unwrap();
+    serde_json::from_str(rest.split_once("</script>").unwrap().0).unwrap()
 }
 
 /// What holds for every page.
@@ -302,6 +208,68 @@ fn an_estimate_has_a_page_of_its_own() {
         assert_eq!(seen.trees, ["Estimated tree", "True tree"]);
     }
     let output = bodyschema(folder.path(), "estimate body/tactile.npy --interval 0 --out own");
+    assert_eq!(output.status.code(), Some(2), "{output:?}");
+}
+
+#[test]
+fn times_of_an_estimate_count_the_samples_that_were_lost() {
+    let folder = tempfile::tempdir().unwrap();
+    let felt = |t: usize, sensor: usize| (0.1 * t as f64 + sensor as f64).sin().max(0.0);
+    let row = |t: usize| {
+        let cells = (0..12)
+            .map(|sensor| if (10..60).contains(&t) { "nan".to_owned() } else { felt(t, sensor).to_string() });
+        cells.collect::<Vec<_>>().join(",") + "\n"
+    };
+    fs::write(folder.path().join("touch.csv"), (0..200).map(row).collect::<String>()).unwrap();
+    succeed(folder.path(), "estimate touch.csv --interval 0.5 --out own");
+    let scene = &scenes(&fs::read_to_string(folder.path().join("own/report.html")).unwrap())[0];
+    let times = scene["times"].as_array().unwrap();
+    assert_eq!(times.len(), 150);
+    assert_eq!([9, 10, 149].map(|frame| times[frame].as_f64().unwrap()), [4.5, 30.0, 99.5]);
+}
+
+#[test]
+fn of_many_draws_that_of_highest_log_posterior_is_shown() {
+    let folder = simulated();
+    let at = |name: &str| folder.path().join(name);
+    succeed(folder.path(), "distance body/tactile.npy --out distance.npy");
+    succeed(folder.path(), "map distance.npy --dims 5 --out body-map.npy");
+    succeed(folder.path(), "infer body-map.npy --chains 20 --sweeps 20 --start uniform --out draws");
+    let samples = fs::read_to_string(at("draws/samples.csv")).unwrap();
+    let cell = |row: &str, name: &str| -> f64 {
+        let column = samples.lines().next().unwrap().split(',').position(|column| column == name).unwrap();
+        row.split(',').nth(column).unwrap().parse().unwrap()
+    };
+    let height = |row: &&str| cell(row, "log_posterior");
+    let best = samples.lines().skip(1).max_by(|a, b| height(a).total_cmp(&height(b))).unwrap();
+    let (chain, parts) = (cell(best, "chain"), cell(best, "parts"));
+    assert!(chain > 0.0, "the first draw is no test: {samples}");
+
+    let page = page(folder.path(), "body --estimate draws");
+    let estimate = &scenes(&page)[0]["estimate"];
+    let mut sensors = BTreeMap::<u64, usize>::new();
+    estimate["of"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .for_each(|part| *sensors.entry(part.as_u64().unwrap()).or_default() += 1);
+    assert_eq!(sensors.values().filter(|sensors| **sensors > 1).count() as f64, parts, "{sensors:?}");
+    let trees = fs::read_to_string(at("draws/trees.csv")).unwrap();
+    let own =
+        trees.lines().skip(1).filter(|row| row.split(',').next().unwrap().parse::<f64>().unwrap() == chain);
+    let own: Vec<Vec<u64>> =
+        own.map(|row| row.split(',').skip(1).take(2).map(|part| part.parse().unwrap()).collect()).collect();
+    let shown: Vec<Vec<u64>> = estimate["tree"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|edge| ["child", "parent"].map(|end| edge[end].as_u64().unwrap()).to_vec())
+        .collect();
+    assert_eq!(shown, own);
+
+    // Draws of another body.
+    fs::write(at("two.csv"), "1,2\n3,4\n").unwrap();
+    let output = bodyschema(folder.path(), "view body --tactile two.csv --estimate draws");
     assert_eq!(output.status.code(), Some(2), "{output:?}");
 }
 

@@ -85,7 +85,7 @@ impl Estimate {
         let all = read_touch(input)?;
         let count = all.sensors();
         let truth = self.truth.read(count)?;
-        let Usable { tactile, sensors, dropped, lost_samples } = usable(all);
+        let Usable { tactile, sensors, dropped, lost_samples, samples } = usable(all);
         say_lost(input, lost_samples);
         if let Some((first, fault)) = dropped.first() {
             eprintln!(
@@ -106,7 +106,8 @@ impl Estimate {
         let mut rng = stream(seed, 1, "co-motion", 0);
         let found = estimate(&tactile, &settings.quantise, &mut rng, &|| bar.inc(1));
         bar.finish_and_clear();
-        let read = Read { tactile: &tactile, sensors: &sensors, dropped: &dropped, lost_samples };
+        let read =
+            Read { tactile: &tactile, sensors: &sensors, dropped: &dropped, samples: &samples, lost_samples };
         let summary = write(out, &found, &read, seed)?;
         let shown = Shown { name: in_file(), interval: self.interval, truth: truth.as_ref(), seed };
         write_text(&out.join("report.html"), &page(&shown.estimated(&found, &read)))?;
@@ -137,7 +138,7 @@ impl Estimate {
 
 /// Writes all files.
 fn write(out: &Path, found: &estimate::Estimate, read: &Read, seed: u64) -> Result<Summary> {
-    let &Read { tactile, sensors, dropped, lost_samples } = read;
+    let &Read { tactile, sensors, dropped, lost_samples, .. } = read;
     let parts = sensors.iter().enumerate().map(|(at, &sensor)| PartRow {
         sensor,
         part: found.parts.labels[at],

@@ -25,7 +25,9 @@ pub struct Read<'a> {
     pub sensors: &'a [usize],
     /// The others.
     pub dropped: &'a [(usize, Fault)],
-    /// Samples that were left out.
+    /// The samples that were used.
+    pub samples: &'a [usize],
+    /// How many were not.
     pub lost_samples: usize,
 }
 
@@ -109,8 +111,10 @@ impl Shown<'_> {
             parent: edge.parent,
             confidence: Some(found.tree.confidence(edge)),
         };
+        let times = frames.samples().map(|sample| read.samples[sample]);
         Scene {
             name: String::new(),
+            times: (read.lost_samples > 0).then(|| times.collect()),
             frames,
             interval: self.interval,
             sensors: count,

@@ -71,7 +71,7 @@ impl Tree {
         let count = all.sensors();
         let parts = read_parts(&self.parts, count)?;
         let truth = self.truth.read(count)?;
-        let Usable { tactile, sensors, dropped, lost_samples } = usable(all);
+        let Usable { tactile, sensors, dropped, lost_samples, .. } = usable(all);
         say_lost(input, lost_samples);
         for (sensor, fault) in dropped.iter().filter(|(sensor, _)| parts[*sensor].is_some()) {
             eprintln!("bodyschema: {}: sensor {sensor} is {fault}, and is left out", input.display());

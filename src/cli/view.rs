@@ -25,7 +25,8 @@ pub struct View {
     /// Pressures, if they are not in DIR: a .npy or .csv file with a row for each sample and a column for each sensor
     #[arg(long, value_name = "FILE")]
     tactile: Option<PathBuf>,
-    /// Folder of an estimate of this body, with parts.csv and tree.csv
+    /// Folder of an estimate of this body, as `estimate` or `infer` wrote it: parts.csv and tree.csv, or draws, of which the one of
+    /// highest log posterior is shown
     #[arg(long, value_name = "DIR")]
     estimate: Option<PathBuf>,
     #[command(flatten)]

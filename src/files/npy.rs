@@ -148,6 +148,15 @@ pub fn read_body_map(path: &Path) -> Result<BodyMap, FileError> {
     Ok(BodyMap { dims: matrix.columns, coordinates: matrix.values })
 }
 
+/// Reads the component of each sensor: how many draws, how many sensors, and their components, draw after draw.
+pub fn read_assignments(path: &Path) -> Result<(usize, usize, Vec<usize>), FileError> {
+    let whole = |value: f64| value >= 0.0 && value <= f64::from(i32::MAX) && value.fract() == 0.0;
+    let matrix = Matrix::read(path, Order::C, |value| {
+        if whole(value) { Ok(value as usize) } else { Err("a component must be a whole number from 0 on") }
+    })?;
+    Ok((matrix.rows, matrix.columns, matrix.values))
+}
+
 /// A matrix as it was read.
 pub(super) struct Matrix<T> {
     pub(super) rows: usize,

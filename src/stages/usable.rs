@@ -40,11 +40,15 @@ pub struct Usable {
     pub dropped: Vec<(usize, Fault)>,
     /// Samples that were left out, because more than half of the sensors have no number there.
     pub lost_samples: usize,
+    /// The other samples, rising.
+    pub samples: Vec<usize>,
 }
 
 /// Leaves out samples at which most sensors have no number, and then sensors that tell nothing.
 pub fn usable(tactile: Tactile) -> Usable {
-    let (tactile, lost_samples) = without_lost_samples(tactile);
+    let all = tactile.samples;
+    let (tactile, samples) = without_lost_samples(tactile);
+    let lost_samples = all - samples.len();
     let fault = |series: &[f32]| {
         if series.iter().any(|pressure| !pressure.is_finite()) {
             Some(Fault::NotFinite)
@@ -57,12 +61,12 @@ pub fn usable(tactile: Tactile) -> Usable {
     let faults: Vec<Option<Fault>> = tactile.pressures.par_chunks_exact(tactile.samples).map(fault).collect();
     let dropped = faults.iter().enumerate().filter_map(|(sensor, fault)| Some((sensor, (*fault)?))).collect();
     let sensors: Vec<usize> = (0..faults.len()).filter(|sensor| faults[*sensor].is_none()).collect();
-    Usable { tactile: only(tactile, &sensors), sensors, dropped, lost_samples }
+    Usable { tactile: only(tactile, &sensors), sensors, dropped, lost_samples, samples }
 }
 
-/// The pressures without samples at which more than half of the sensors have no number, such as a frame that was lost, and how
-/// many these are. If that is all of them, nothing is left out.
-fn without_lost_samples(mut tactile: Tactile) -> (Tactile, usize) {
+/// The pressures without samples at which more than half of the sensors have no number, such as a frame that was lost, and the
+/// samples that are left. If that is none of them, nothing is left out.
+fn without_lost_samples(mut tactile: Tactile) -> (Tactile, Vec<usize>) {
     let (samples, sensors) = (tactile.samples, tactile.sensors());
     let mut missing = vec![0; samples];
     for series in tactile.series().filter(|series| series.iter().any(|pressure| !pressure.is_finite())) {
@@ -73,7 +77,7 @@ fn without_lost_samples(mut tactile: Tactile) -> (Tactile, usize) {
     }
     let kept: Vec<usize> = (0..samples).filter(|t| 2 * missing[*t] <= sensors).collect();
     if kept.is_empty() || kept.len() == samples {
-        return (tactile, 0);
+        return (tactile, (0..samples).collect());
     }
     let mut to = 0;
     for sensor in 0..sensors {
@@ -84,7 +88,7 @@ fn without_lost_samples(mut tactile: Tactile) -> (Tactile, usize) {
     }
     tactile.pressures.truncate(to);
     tactile.samples = kept.len();
-    (tactile, samples - kept.len())
+    (tactile, kept)
 }
 
 /// The pressures of some sensors, which rise. Nothing is copied to another place of the memory: it may be most of what there is.
@@ -117,7 +121,7 @@ mod tests {
         let nan = f32::NAN;
         let pressures = vec![1.0, nan, 2.0, 3.0, 4.0, nan, 5.0, 6.0, nan, 1.0, 2.0, 3.0];
         let found = usable(Tactile { samples: 4, pressures });
-        assert_eq!((found.lost_samples, found.tactile.samples), (1, 3));
+        assert_eq!((found.lost_samples, found.tactile.samples, found.samples), (1, 3, vec![0, 2, 3]));
         assert_eq!(found.sensors, [0, 1]);
         assert_eq!(found.tactile.pressures, [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
         assert_eq!(found.dropped, [(2, Fault::NotFinite)]);

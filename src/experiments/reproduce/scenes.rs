@@ -70,6 +70,7 @@ fn scene(task: &Task, found: &Found, at: usize, room: usize) -> Result<Scene, Ex
     Ok(Scene {
         name: String::new(),
         frames,
+        times: None,
         interval: Some(interval),
         sensors: felt.sensors(),
         touch: frames.of_touch(&felt),

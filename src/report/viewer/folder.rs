@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
+use super::best_draw;
 use super::frames::Frames;
 use super::scene::{Parts, Scene, TreeEdge};
 use crate::files::moved_body::MovedBody;
@@ -55,10 +56,12 @@ pub fn read(sources: &Sources, settings: &Settings) -> Result<Scene, FileError> 
             if found.join("labels.csv").is_file() { &["edges.csv"] } else { &["tree.csv", "edges.csv"] };
         let trees: Vec<PathBuf> = trees.iter().map(|name| found.join(name)).collect();
         Some(parts(&file, &trees, sensors)?)
+    } else if best_draw::is_in(found) {
+        Some(best_draw::read(found, sensors)?)
     } else if let Some(estimate) = sources.estimate {
         return Err(FileError::new(
             estimate,
-            "has no parts.csv; give a folder that `bodyschema estimate` wrote",
+            "has no parts.csv; give a folder that `bodyschema estimate` or `infer` wrote",
         ));
     } else {
         None
@@ -66,7 +69,18 @@ pub fn read(sources: &Sources, settings: &Settings) -> Result<Scene, FileError> 
     let frames = Frames::of(&touch, Frames::every(interval), ROOM);
     let shown = frames.of_touch(&touch);
     let map = map(&[found, folder], touch, settings)?;
-    Ok(Scene { name: String::new(), frames, interval, sensors, touch: shown, body, map, truth, estimate })
+    Ok(Scene {
+        name: String::new(),
+        frames,
+        times: None,
+        interval,
+        sensors,
+        touch: shown,
+        body,
+        map,
+        truth,
+        estimate,
+    })
 }
 
 /// The file of the pressures.

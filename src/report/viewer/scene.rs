@@ -18,6 +18,8 @@ pub struct Scene {
     pub name: String,
     /// Times that are shown.
     pub frames: Frames,
+    /// The sample of each frame in the recording; `None` if no sample was left out before.
+    pub times: Option<Vec<usize>>,
     /// Time between two samples, s; `None` if it is not known.
     pub interval: Option<f64>,
     /// M.
@@ -71,13 +73,16 @@ impl Parts {
 impl Scene {
     /// The data, as `viewer.js` reads them.
     pub fn data(&self) -> Value {
-        let Self { name, frames, interval, sensors, body, map, truth, estimate, .. } = self;
+        let Self { name, frames, times, interval, sensors, body, map, truth, estimate, .. } = self;
         json!({
             "name": name,
             "frames": frames.count,
             "sensors": sensors,
             "start": frames.first as f64 * interval.unwrap_or(1.0),
             "step": frames.every as f64 * interval.unwrap_or(1.0),
+            "times": times.as_ref().map(|times| {
+                times.iter().map(|&sample| sample as f64 * interval.unwrap_or(1.0)).collect::<Vec<_>>()
+            }),
             "unit": if interval.is_some() { "s" } else { "samples" },
             "touch": self.pressures(),
             "body": body.as_ref().map(|body| self.moved(body)),

@@ -110,7 +110,7 @@ class Viewer {
   }
 
   clock(frame) {
-    const { start, step, unit } = this.scene, time = start + frame * step;
+    const { start, step, times, unit } = this.scene, time = times ? times[Math.round(frame)] : start + frame * step;
     return unit === "s" ? `${time.toFixed(1)} s` : `sample ${Math.round(time)}`;
   }
 

@@ -1,0 +1,60 @@
+//! Read the draw of highest log posterior from the folder of the published samplers.
+
+use std::path::Path;
+
+use serde::Deserialize;
+
+use super::scene::{Parts, TreeEdge};
+use crate::files::tables::read_rows;
+use crate::files::{FileError, npy};
+
+/// A row of samples.csv, of which a draw is known by its chain and sweep.
+#[derive(Deserialize)]
+struct Sample {
+    chain: usize,
+    sweep: Option<usize>,
+    log_posterior: f64,
+}
+
+/// A row of trees.csv.
+#[derive(Deserialize)]
+struct Joined {
+    chain: usize,
+    sweep: Option<usize>,
+    child: usize,
+    parent: usize,
+}
+
+/// The files that a folder must have.
+const FILES: [&str; 3] = ["samples.csv", "assignments.npy", "trees.csv"];
+
+/// Whether a folder is one that `infer` wrote.
+pub fn is_in(folder: &Path) -> bool {
+    FILES.iter().all(|name| folder.join(name).is_file())
+}
+
+/// Parts and tree of the first draw of highest log posterior, of so many sensors.
+///
+/// # Errors
+/// If a file cannot be read, or the files do not fit each other.
+pub fn read(folder: &Path, sensors: usize) -> Result<Parts, FileError> {
+    let [samples, assignments, trees] = FILES.map(|name| folder.join(name));
+    let draws: Vec<Sample> = read_rows(&samples)?;
+    let (rows, columns, labels) = npy::read_assignments(&assignments)?;
+    if (rows, columns) != (draws.len(), sensors) {
+        let message = format!(
+            "has {rows} draws of {columns} sensors, but samples.csv has {} draws, and there are {sensors} sensors",
+            draws.len()
+        );
+        return Err(FileError::new(&assignments, message));
+    }
+    let better =
+        |best: usize, at: usize| if draws[at].log_posterior > draws[best].log_posterior { at } else { best };
+    let best = (0..draws.len()).fold(0, better);
+    let Sample { chain, sweep, .. } = draws[best];
+    let own: Vec<Joined> = read_rows(&trees)?;
+    let own = own.into_iter().filter(|row| (row.chain, row.sweep) == (chain, sweep));
+    let of: Vec<Option<usize>> = labels[best * sensors..][..sensors].iter().copied().map(Some).collect();
+    let tree = own.map(|Joined { child, parent, .. }| TreeEdge { child, parent, confidence: None });
+    Ok(Parts { of, tree: tree.collect() })
+}
