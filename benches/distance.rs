@@ -24,7 +24,7 @@ fn main() {
     let agent = Agent::new(&settings.agent, &settings.skin);
     let trajectory = wandering(agent.parts.len());
     let tactile = timed("sense", || sense(&agent, &trajectory, &settings.sense));
-    for levels in [4, 8] {
+    for levels in [4, 8, 16, 64, 256] {
         settings.quantise.levels = levels;
         let symbols = timed(&format!("quantise, N = {levels}"), || quantise(&tactile, &settings.quantise));
         timed(&format!("distance, N = {levels}"), || information_metric(&symbols));

@@ -7,6 +7,7 @@ use std::process::Command;
 use std::time::Instant;
 
 use bodyschema::files::tables::write_rows;
+use bodyschema::internals::estimate;
 use bodyschema::numerics::rng::stream;
 use bodyschema::settings::Settings;
 use bodyschema::stages::agent::Agent;
@@ -15,7 +16,7 @@ use bodyschema::stages::distance::{Distances, information_metric};
 use bodyschema::stages::quantise::{Symbols, quantise};
 use bodyschema::stages::schema::{Model, infer};
 use bodyschema::stages::sense::{Tactile, sense};
-use bodyschema::stages::simulate::simulate;
+use bodyschema::stages::simulate::{Trajectory, simulate};
 use plotters::prelude::*;
 use rand::RngExt;
 use serde::Serialize;
@@ -98,14 +99,31 @@ fn simulate_samples(samples: usize) -> Measured {
     )
 }
 
-fn sense_size(samples: usize, sensors: usize) -> Measured {
-    let settings = settings(samples, sensors);
+/// The paper's agent, and a movement of it.
+fn moved(settings: &Settings) -> (Agent, Trajectory) {
     let agent = Agent::new(&settings.agent, &settings.skin);
     let rng = &mut stream(1, 1, "motion", 0);
+    let interval = settings.sense.interval;
     let trajectory =
-        simulate(&agent, &settings.motion, &settings.physics, settings.sense.interval, rng, &|| ())
-            .expect("a stable body");
+        simulate(&agent, &settings.motion, &settings.physics, interval, rng, &|| ()).expect("a stable body");
+    (agent, trajectory)
+}
+
+fn sense_size(samples: usize, sensors: usize) -> Measured {
+    let settings = settings(samples, sensors);
+    let (agent, trajectory) = moved(&settings);
     measure(|| (), |()| sense(&agent, &trajectory, &settings.sense))
+}
+
+/// Parts and tree from touch alone; half of the joints are locked at any time.
+fn estimate_size(samples: usize, sensors: usize) -> Measured {
+    let mut settings = settings(samples, sensors);
+    settings.motion.coordination = 0.5;
+    let (agent, trajectory) = moved(&settings);
+    let tactile = sense(&agent, &trajectory, &settings.sense);
+    drop((agent, trajectory));
+    let rng = || stream(1, 1, "co-motion", 0);
+    measure(|| (), |()| estimate(&tactile, &settings.quantise, &mut rng(), &|| ()))
 }
 
 fn quantise_size(samples: usize, sensors: usize) -> Measured {
@@ -191,7 +209,7 @@ const SERIES: &[Series] = &[
     Series {
         stage: "quantise",
         variable: "T",
-        sizes: &[12_500, 25_000, 50_000, 100_000],
+        sizes: &[12_500, 25_000, 50_000, 100_000, 1_000_000],
         time: Some(1.0),
         memory: Some(1.0),
         run: |t| quantise_size(t, 840),
@@ -207,7 +225,7 @@ const SERIES: &[Series] = &[
     Series {
         stage: "distance",
         variable: "T",
-        sizes: &[12_500, 25_000, 50_000, 100_000],
+        sizes: &[12_500, 25_000, 50_000, 100_000, 1_000_000],
         time: Some(1.0),
         memory: Some(1.0),
         run: |t| distance_size(t, 840, 4),
@@ -287,6 +305,22 @@ const SERIES: &[Series] = &[
                 rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads can be started");
             pool.install(|| chains(840, 14, 10, 5, 16))
         },
+    },
+    Series {
+        stage: "estimate",
+        variable: "T",
+        sizes: &[1_000, 10_000, 100_000, 1_000_000],
+        time: Some(1.0),
+        memory: None,
+        run: |t| estimate_size(t, 840),
+    },
+    Series {
+        stage: "estimate",
+        variable: "M",
+        sizes: &[420, 840, 2_100, 4_200, 8_400],
+        time: Some(1.0),
+        memory: None,
+        run: |m| estimate_size(10_000, m),
     },
 ];
 

@@ -1,5 +1,5 @@
-//! Measure the movement of the paper's agent and its tactile sense, in s: `cargo bench --bench simulate`.
-//! `benches/peers/bare_loop.c` is the floor.
+//! Measure the movement of the paper's agent by each controller, its tactile sense, and bodies that move at the same time, in s:
+//! `cargo bench --bench simulate`. `benches/peers/bare_loop.c` is the floor.
 
 use std::time::Instant;
 
@@ -7,14 +7,24 @@ use bodyschema::numerics::rng::stream;
 use bodyschema::settings::Settings;
 use bodyschema::stages::agent::Agent;
 use bodyschema::stages::sense::sense;
-use bodyschema::stages::simulate::simulate;
+use bodyschema::stages::simulate::{Controller, simulate};
+use rayon::prelude::*;
 
 /// Measurements, of which the median is printed.
 const MEASUREMENTS: usize = 3;
 
 fn main() {
-    let settings = Settings::paper();
-    let Settings { motion, physics, sense: tactile_sense, .. } = &settings;
+    for (name, controller) in [("torque", Controller::Torque), ("servo", Controller::Servo)] {
+        let mut settings = Settings::paper();
+        settings.motion.controller = controller;
+        one(name, &settings);
+    }
+    many(&Settings::paper());
+}
+
+/// One body.
+fn one(name: &str, settings: &Settings) {
+    let Settings { motion, physics, sense: tactile_sense, .. } = settings;
     let interval = tactile_sense.interval;
     let (samples, steps) = (physics.samples(interval), physics.steps_per_sample(interval));
     let agent = Agent::new(&settings.agent, &settings.skin);
@@ -31,6 +41,36 @@ fn main() {
     }
     times.sort_by(|a, b| a.0.total_cmp(&b.0));
     let (both, simulated) = times[MEASUREMENTS / 2];
-    println!("simulate: {simulated:.3} s for {} steps", samples * steps);
-    println!("sense: {:.3} s for {} samples of {} sensors", both - simulated, samples, agent.sites.len());
+    println!("simulate, {name}: {simulated:.3} s for {} steps", samples * steps);
+    println!(
+        "sense, {name}: {:.3} s for {} samples of {} sensors",
+        both - simulated,
+        samples,
+        agent.sites.len()
+    );
+}
+
+/// As many bodies as threads, at the same time and one after the other: 1 if each has a core of its own.
+fn many(settings: &Settings) {
+    let Settings { motion, physics, sense, .. } = settings;
+    let agent = Agent::new(&settings.agent, &settings.skin);
+    let bodies = rayon::current_num_threads();
+    let run = |body: usize| {
+        let mut rng = stream(1, 1 + body, "motion", 0);
+        simulate(&agent, motion, physics, sense.interval, &mut rng, &|| ()).expect("a stable body")
+    };
+    let timed = |work: &dyn Fn()| {
+        let start = Instant::now();
+        work();
+        start.elapsed().as_secs_f64()
+    };
+    let mut shares: Vec<f64> = (0..MEASUREMENTS)
+        .map(|_| {
+            let together = timed(&|| (0..bodies).into_par_iter().for_each(|body| drop(run(body))));
+            let in_turn = timed(&|| (0..bodies).for_each(|body| drop(run(body))));
+            in_turn / together / bodies as f64
+        })
+        .collect();
+    shares.sort_by(f64::total_cmp);
+    println!("{bodies} bodies on {bodies} threads: efficiency {:.3}", shares[MEASUREMENTS / 2]);
 }

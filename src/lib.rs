@@ -62,6 +62,7 @@ pub mod cli;
 #[doc(hidden)]
 pub mod internals {
     pub use crate::analysis::consensus::consensus;
+    pub use crate::analysis::estimate::estimate;
     pub use crate::analysis::posterior::Posterior;
     pub use crate::analysis::published::figures;
     pub use crate::analysis::statistics;

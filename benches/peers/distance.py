@@ -23,12 +23,13 @@ def symbols(levels, seed=1):
 
 def one_hot_metric(series, levels):
     """H(X|Y) + H(Y|X) = 2 H(X, Y) - H(X) - H(Y) of all pairs, in bits, from one matrix product."""
-    joint = np.zeros((SENSORS * levels, SENSORS * levels), dtype=np.float32)  # exact below 2^24
-    for start in range(0, SAMPLES, CHUNK):
+    samples, sensors = series.shape
+    joint = np.zeros((sensors * levels, sensors * levels), dtype=np.float32)  # exact below 2^24
+    for start in range(0, samples, CHUNK):
         chunk = series[start : start + CHUNK, :, None]
         code = (chunk == np.arange(levels, dtype=np.uint8)).astype(np.float32).reshape(len(chunk), -1)
         joint += code.T @ code
-    p = joint.reshape(SENSORS, levels, SENSORS, levels) / np.float32(SAMPLES)
+    p = joint.reshape(sensors, levels, sensors, levels) / np.float32(samples)
     both = -(p * np.log2(p, out=np.zeros_like(p), where=p > 0)).sum(axis=(1, 3), dtype=np.float64)
     one = np.diag(both)  # H(X, X) = H(X)
     return 2 * both - one[:, None] - one
@@ -44,6 +45,22 @@ def numpy_seconds(levels, measurements=2):
         return time.perf_counter() - start
 
     return min(measure() for _ in range(measurements))
+
+
+def quantised(pressures, levels):
+    """Level 0 is no pressure; the others share each sensor's positive pressures equally, as `bodyschema distance` has it."""
+    symbols = np.zeros(pressures.shape, dtype=np.uint8)
+    for sensor, series in enumerate(pressures.T):
+        felt = series[series > 0]
+        if len(felt):
+            limits = np.quantile(felt, np.arange(1, levels - 1) / (levels - 1))
+            symbols[:, sensor] = (series > 0) * (1 + np.searchsorted(limits, series, side="right"))
+    return symbols
+
+
+def command(tactile, levels, out):
+    """What a user would write in place of `bodyschema distance`: a file of pressures -> a file of distances."""
+    np.save(out, one_hot_metric(quantised(np.load(tactile), levels), levels))
 
 
 def sklearn_seconds(levels):

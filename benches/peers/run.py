@@ -15,10 +15,12 @@ import statistics
 import subprocess
 import sys
 import tempfile
+import time
 
 ROUNDS = 3
 root = pathlib.Path(__file__).resolve().parent.parent.parent
 peers = pathlib.Path(__file__).resolve().parent
+program = pathlib.Path(os.environ.get("CARGO_TARGET_DIR", root / "target")) / "release/bodyschema"
 
 
 def output(*command, **environment):
@@ -41,10 +43,10 @@ def peer(module, call, **environment):
     return float(output(sys.executable, "-c", code, **environment))
 
 
-def simulate(*torque):
+def simulate(controller, *torque):
     def run(folder, round):
         text = bench("simulate", round)
-        ours = seconds(text, r"simulate: ([\d.]+)") + seconds(text, r"sense: ([\d.]+)")
+        ours = sum(seconds(text, rf"{stage}, {controller}: ([\d.]+)") for stage in ("simulate", "sense"))
         return ours, float(output(str(folder / "bare_loop"), "1000000", *torque))
 
     return run
@@ -58,6 +60,32 @@ def distance(levels):
     return run
 
 
+def clocked(*command):
+    start = time.perf_counter()
+    output(*map(str, command))
+    return time.perf_counter() - start
+
+
+@functools.cache
+def whole(folder, levels, round):
+    """Seconds of `bodyschema distance` from file to file."""
+    return clocked(program, "distance", folder / "body/tactile.npy", "--levels", levels, "--out", folder / "distance.npy")
+
+
+def command(levels):
+    def run(folder, round):
+        call = f"distance.command({str(folder / 'body/tactile.npy')!r}, {levels}, {str(folder / 'peer.npy')!r})"
+        code = f"import sys; sys.path.insert(0, {str(peers)!r}); import distance; {call}"
+        return whole(folder, levels, round), clocked(sys.executable, "-c", code)
+
+    return run
+
+
+def levels(count):
+    """The same with other numbers of levels, beside 4."""
+    return lambda folder, round: (whole(folder, 4, round), whole(folder, count, round))
+
+
 def map_840(_, round):
     ours = seconds(bench("map", round), r"840 sensors.*: ([\d.]+) ms", 1e-3)
     return ours, peer("map", "map.statistics.median(map.eigh(m) for m in [map.distances(840)] * 11)")
@@ -68,23 +96,34 @@ def majorisation(_, round):
     return ours, peer("map", "map.smacof(map.distances(840))")
 
 
-def schema(call):
+def nonmetric(_, round):
+    ours = seconds(bench("map", round), r"nonmetric.*: ([\d.]+) ms", 1e-3)
+    return ours, peer("map", "map.nonmetric(map.distances(840))")
+
+
+def schema(call, sampler=""):
     def run(_, round):
-        ours = seconds(bench("schema", round), r"dpgmm-lj: ([\d.]+) ms", 1e-3)
+        ours = seconds(bench("schema", round), rf"dpgmm-lj{sampler}: ([\d.]+) ms", 1e-3)
         return ours, peer("schema", call, OMP_NUM_THREADS="1")
 
     return run
 
 
 STAGES = [
-    ("simulate + sense", "1,000,000 steps, 100,000 x 840 pressures", "bare loop of dWorldStep, in C", simulate()),
-    ("simulate + sense", "the same", "the same, locks limited to 1000 N m", simulate("1000")),
+    ("simulate + sense", "1,000,000 steps, 100,000 x 840 pressures, torque", "bare loop of dWorldStep, in C", simulate("torque")),
+    ("simulate + sense", "the same, servo", "the same", simulate("servo")),
+    ("simulate + sense", "the same, servo", "the same, locks limited to 1000 N m", simulate("servo", "1000")),
+    ("`bodyschema distance`", "a file of 336 MB of a body, N = 4, to a file", "NumPy, from file to file", command(4)),
+    ("`bodyschema distance`", "the same, N = 8", "NumPy, from file to file", command(8)),
+    *(("`bodyschema distance`", "the same, N = 4", f"itself at N = {count}", levels(count)) for count in (2, 8, 10, 16, 32, 64, 128, 256)),
     ("distance", "840 sensors, T = 100,000, N = 4", "NumPy one-hot product", distance(4)),
     ("distance", "the same, N = 8", "NumPy one-hot product", distance(8)),
     ("map", "840 sensors to 15 dimensions", "numpy.linalg.eigh", map_840),
     ("map", "840 sensors to 14 dimensions, 300 steps of majorisation", "scikit-learn's smacof", majorisation),
+    ("map", "the same, 30 nonmetric steps", "scikit-learn's smacof", nonmetric),
     ("schema", "a sweep of DPGMM-LJ, n = 840, d = 14, K = 10, one core", "NumPy and SciPy", schema("schema.numpy_seconds()")),
     ("schema", "the same", "an iteration of scikit-learn's BayesianGaussianMixture", schema("schema.sklearn_seconds()")),
+    ("schema", "a sweep as the authors' code has it, the same", "NumPy and SciPy", schema("schema.numpy_seconds()", ", authors-code")),
 ]
 
 
@@ -93,6 +132,8 @@ def main():
         folder = pathlib.Path(name)
         flags = output("pkg-config", "--cflags", "--libs", "ode").split()
         output("cc", "-O2", str(peers / "bare_loop.c"), "-o", str(folder / "bare_loop"), *flags)
+        output("cargo", "build", "--quiet", "--release", "--locked")
+        output(str(program), "simulate", "--out", str(folder / "body"))
         print("| stage | work | ours, s | peer | peer, s | peer / ours |\n|---|---|---|---|---|---|")
         for stage, work, other, run in STAGES:
             pairs = [run(folder, round) for round in range(ROUNDS)]
