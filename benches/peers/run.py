@@ -1,10 +1,10 @@
 """Every stage and what a user would write instead, in one run -> one table: ours, peer, ratio.
 
 Run: pip install -r benches/peers/requirements.txt
-     python benches/peers/run.py [--experiment]
+     python benches/peers/run.py [--experiment] [--rounds N]
 
-Takes about ten minutes on two cores, and five more with --experiment, which times experiment 1 with one simulation.
-Ours and its peer run one after the other, ROUNDS times; the table has the medians of both and of their ratios.
+Takes about six minutes a round on two cores, and five more with --experiment, which times experiment 1 with one simulation.
+Ours and its peer run one after the other, three times or as --rounds says; the table has the medians of both and of their ratios.
 """
 
 import functools
@@ -17,7 +17,7 @@ import sys
 import tempfile
 import time
 
-ROUNDS = 3
+ROUNDS = int(sys.argv[1 + sys.argv.index("--rounds")]) if "--rounds" in sys.argv else 3
 root = pathlib.Path(__file__).resolve().parent.parent.parent
 peers = pathlib.Path(__file__).resolve().parent
 program = pathlib.Path(os.environ.get("CARGO_TARGET_DIR", root / "target")) / "release/bodyschema"
