@@ -114,20 +114,20 @@ pub fn quantise(tactile: &Tactile, settings: &Quantise) -> Symbols {
 /// Upper bounds of all levels but the last: 0 for no pressure, then the quantiles of the positive values.
 fn equal_frequency(pressures: &[f32], levels: usize) -> Vec<f32> {
     let mut positive: Vec<f32> = pressures.iter().copied().filter(|pressure| *pressure > 0.0).collect();
-    let mut thresholds = vec![0.0];
-    // Selected, not sorted: each quantile is sought among the values above the one before.
-    let mut below = 0;
-    for level in 1..levels - 1 {
-        // The last of the lowest `level` of `levels - 1` shares.
-        let rank = (positive.len() * level).div_ceil(levels - 1);
-        let Some(last) = rank.checked_sub(1) else { continue };
-        if last >= below {
-            positive[below..].select_nth_unstable_by(last - below, f32::total_cmp);
-            below = last + 1;
-        }
-        thresholds.push(positive[last]);
-    }
-    thresholds
+    // The last of the lowest `level` of `levels - 1` shares.
+    let rank = |level: usize| (positive.len() * level).div_ceil(levels - 1).checked_sub(1);
+    let ranks: Vec<usize> = (1..levels - 1).filter_map(rank).collect();
+    select(&mut positive, &ranks, 0);
+    std::iter::once(0.0).chain(ranks.into_iter().map(|rank| positive[rank])).collect()
+}
+
+/// Brings to each of some ranks, which rise and count from `first`, the value that sorting would: by the one in the middle, and then
+/// those on its either side. To select takes less than to sort.
+fn select(values: &mut [f32], ranks: &[usize], first: usize) {
+    let Some(&middle) = ranks.get(ranks.len() / 2) else { return };
+    let (below, _, above) = values.select_nth_unstable_by(middle - first, f32::total_cmp);
+    select(below, &ranks[..ranks.partition_point(|rank| *rank < middle)], first);
+    select(above, &ranks[ranks.partition_point(|rank| *rank <= middle)..], middle + 1);
 }
 
 /// Upper bounds of all levels but the last, evenly spaced over the range of the values.

@@ -124,8 +124,9 @@ fn metric_of_counts(joint: &[u32], first: &[f64], second: &[f64], logarithms: &[
     for (row, x) in joint.chunks_exact(second.len()).zip(first) {
         // Of many levels, most pairs never meet and add 0. They are left out without a branch, which no processor could foresee.
         let (mut met, mut count) = ([0_u8; 256], 0);
-        for (symbol, &both) in (0..=u8::MAX).zip(row) {
-            met[count] = symbol;
+        for (symbol, &both) in row.iter().enumerate() {
+            // At most 256 are counted; the mask says so to the compiler.
+            met[count & 255] = symbol as u8;
             count += usize::from(both > 0);
         }
         for &symbol in &met[..count] {
