@@ -2,7 +2,9 @@
 //! not installed), and that it says what happened.
 
 use std::env;
+use std::ffi::OsStr;
 use std::fs;
+use std::os::unix::ffi::OsStrExt;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::{SystemTime, UNIX_EPOCH};
@@ -139,4 +141,18 @@ fn a_crate_says_what_was_run_when_with_which_files_and_hashes() {
         }
     }
     assert_eq!(one, again);
+}
+
+#[test]
+fn a_folder_whose_name_is_no_text_gets_its_crate() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("design.toml"), design()).unwrap();
+    let out = OsStr::from_bytes(b"r\xff");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_bodyschema"));
+    let command =
+        command.current_dir(folder.path()).args(["bodies", "--design", "design.toml", "--out"]).arg(out);
+    let output = command.output().unwrap();
+    assert!(output.status.success(), "{output:?}");
+    let run = entity(&read(&folder.path().join(out).join(CRATE)), "#run").clone();
+    assert!(run["description"].as_str().unwrap().ends_with("r\u{fffd}"), "{run}");
 }

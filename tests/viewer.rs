@@ -193,6 +193,7 @@ fn without_webgl_or_without_a_body_touch_over_time_is_shown() {
 fn an_estimate_has_a_page_of_its_own() {
     let folder = simulated();
     let truth = "--labels body/labels.csv --tree body/tree.csv";
+    let tree = fs::read_to_string(folder.path().join("body/tree.csv")).unwrap();
     succeed(folder.path(), &format!("estimate body/tactile.npy {truth} --interval 0.1 --out own"));
     let page = fs::read_to_string(folder.path().join("own/report.html")).unwrap();
     assert!(
@@ -207,8 +208,12 @@ fn an_estimate_has_a_page_of_its_own() {
         assert!(seen.clock.ends_with(" s"), "{}", seen.clock);
         assert_eq!(seen.trees, ["Estimated tree", "True tree"]);
     }
-    let output = bodyschema(folder.path(), "estimate body/tactile.npy --interval 0 --out own");
-    assert_eq!(output.status.code(), Some(2), "{output:?}");
+    // Not over the true tree.
+    for wrong in ["--interval 0 --out own", "--out body"] {
+        let output = bodyschema(folder.path(), &format!("estimate body/tactile.npy {wrong}"));
+        assert_eq!(output.status.code(), Some(2), "{output:?}");
+    }
+    assert_eq!(fs::read_to_string(folder.path().join("body/tree.csv")).unwrap(), tree);
 }
 
 #[test]
@@ -277,10 +282,12 @@ fn of_many_draws_that_of_highest_log_posterior_is_shown() {
 fn what_does_not_fit_is_said_in_one_line() {
     let folder = simulated();
     let at = |name: &str| folder.path().join(name);
-    for name in ["empty", "own", "torn"] {
+    for name in ["empty", "fewer", "own", "torn"] {
         fs::create_dir(at(name)).unwrap();
     }
     fs::write(at("own/tactile.csv"), "1,2\n3,4\n").unwrap();
+    fs::write(at("fewer/parts.csv"), "sensor,part\n0,0\n1,1\n").unwrap();
+    fs::write(at("fewer/summary.json"), "{\"sensors\": 2}").unwrap();
     fs::write(at("own/parts.csv"), "sensor,part\n0,0\n1,1\n").unwrap();
     fs::write(at("own/tree.csv"), "child,parent\n1,7\n").unwrap();
     fs::write(at("torn/tactile.csv"), "1,2\n3,4\n").unwrap();
@@ -290,7 +297,9 @@ fn what_does_not_fit_is_said_in_one_line() {
     for (arguments, expected) in [
         ("absent", "absent: no such folder"),
         ("empty", "empty: has no tactile.npy or tactile.csv"),
+        ("absent --tactile body/tactile.npy", "absent: no such folder"),
         ("body --tactile absent.npy", "absent.npy: no such file"),
+        ("body --estimate fewer", "fewer/summary.json: is of 2 sensors, but the pressures are of 840"),
         ("body --estimate empty", "empty: has no parts.csv"),
         ("own", "own/tree.csv: part 7 has no sensor in own/parts.csv"),
         (

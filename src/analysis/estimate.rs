@@ -34,14 +34,20 @@ pub struct Estimate {
 ///
 /// In: M × T pressures of sensors that all change. Calls `tick` after each of the three steps: distances, parts, tree.
 pub fn estimate(tactile: &Tactile, levels: &Quantise, rng: &mut impl Rng, tick: &dyn Fn()) -> Estimate {
-    let sensors: Vec<usize> = spread(tactile.sensors(), MAX_SENSORS).collect();
-    let distances = information_metric(&quantise(&excerpt(tactile, &sensors), levels));
+    let (sensors, distances) = distances(tactile, levels);
     tick();
     let parts = rigid_parts(tactile, &sensors, &distances);
     tick();
     let tree = co_motion(tactile, &trusted(&parts), None, rng);
     tick();
     Estimate { parts, tree, mapped: sensors, distances }
+}
+
+/// Some sensors, spread over all and rising, and their distances.
+pub fn distances(tactile: &Tactile, levels: &Quantise) -> (Vec<usize>, Distances) {
+    let sensors: Vec<usize> = spread(tactile.sensors(), MAX_SENSORS).collect();
+    let distances = information_metric(&quantise(&excerpt(tactile, &sensors), levels));
+    (sensors, distances)
 }
 
 /// The part of each sensor that its part's motion explains. Others may be on another part, and would bring that one's motion.

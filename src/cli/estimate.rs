@@ -10,11 +10,11 @@ use serde::Serialize;
 use super::estimate_report::{Read, Shown};
 use super::options::{SettingsAndSeed, TruthFiles, seconds};
 use super::output::say;
-use super::tree::{self, say_lost};
+use super::tree::{self, refuse_truth, say_lost, without_noise};
 use crate::analysis::estimate::{self, estimate};
 use crate::analysis::statistics::mean;
 use crate::experiments::progress::progress;
-use crate::files::tables::write_rows;
+use crate::files::tables::{write_rows, write_rows_of};
 use crate::files::touch::read_touch;
 use crate::files::{prepare_folder, write_text};
 use crate::numerics::rng::stream;
@@ -87,13 +87,7 @@ impl Estimate {
         let truth = self.truth.read(count)?;
         let Usable { tactile, sensors, dropped, lost_samples, samples } = usable(all);
         say_lost(input, lost_samples);
-        if let Some((first, fault)) = dropped.first() {
-            eprintln!(
-                "bodyschema: {}: {} of {count} sensors are left out (the first, {first}, is {fault}); see dropped.csv",
-                input.display(),
-                dropped.len()
-            );
-        }
+        let tactile = without_noise(input, tactile);
         ensure!(
             sensors.len() >= MIN_SENSORS,
             "{}: {} of {count} sensors feel anything that can be used, but parts can be told apart from {MIN_SENSORS} on; see `bodyschema tree` \
@@ -101,7 +95,15 @@ impl Estimate {
             in_file(),
             sensors.len()
         );
+        refuse_truth(out)?;
         prepare_folder(out)?;
+        if let Some((first, fault)) = dropped.first() {
+            eprintln!(
+                "bodyschema: {}: {} of {count} sensors are left out (the first, {first}, is {fault}); see dropped.csv",
+                input.display(),
+                dropped.len()
+            );
+        }
         let bar = progress(3, "estimate".to_owned());
         let mut rng = stream(seed, 1, "co-motion", 0);
         let found = estimate(&tactile, &settings.quantise, &mut rng, &|| bar.inc(1));
@@ -109,7 +111,13 @@ impl Estimate {
         let read =
             Read { tactile: &tactile, sensors: &sensors, dropped: &dropped, samples: &samples, lost_samples };
         let summary = write(out, &found, &read, seed)?;
-        let shown = Shown { name: in_file(), interval: self.interval, truth: truth.as_ref(), seed };
+        let shown = Shown {
+            name: in_file(),
+            interval: self.interval,
+            truth: truth.as_ref(),
+            of: settings.map.of,
+            seed,
+        };
         write_text(&out.join("report.html"), &page(&shown.estimated(&found, &read)))?;
         say(format!(
             "{} parts of {} sensors over {} samples, in {}; open report.html there",
@@ -148,7 +156,7 @@ fn write(out: &Path, found: &estimate::Estimate, read: &Read, seed: u64) -> Resu
     });
     write_rows(&out.join("parts.csv"), parts)?;
     let row = |(sensor, fault): &(usize, Fault)| DroppedRow { sensor: *sensor, fault: fault.to_string() };
-    write_rows(&out.join("dropped.csv"), dropped.iter().map(row))?;
+    write_rows_of(&out.join("dropped.csv"), &["sensor", "fault"], dropped.iter().map(row))?;
     tree::write(out, &found.tree)?;
     let summary = Summary {
         samples: tactile.samples,

@@ -7,15 +7,13 @@ use crate::analysis::statistics::quantile;
 use crate::report::estimated::{Estimated, PartLine};
 use crate::report::viewer::frames::Frames;
 use crate::report::viewer::scene::{Parts, Scene, TreeEdge};
-use crate::stages::body_map::{BodyMap, ClassicalScaling};
+use crate::report::viewer::sketch::sketch;
+use crate::stages::body_map::{BodyMap, MapOf};
 use crate::stages::evaluate::score;
 use crate::stages::schema::Draw;
 use crate::stages::sense::Tactile;
 use crate::stages::tree::{Edge, Truth};
 use crate::stages::usable::Fault;
-
-/// Room for pressures on the page, bytes.
-const ROOM: usize = 1_000_000;
 
 /// What of the input was used.
 pub struct Read<'a> {
@@ -46,6 +44,8 @@ pub struct Shown<'a> {
     pub interval: Option<f64>,
     /// True parts and tree.
     pub truth: Option<&'a Truth>,
+    /// What its map is of.
+    pub of: MapOf,
     /// Master seed.
     pub seed: u64,
 }
@@ -96,9 +96,14 @@ impl Shown<'_> {
         ]
     }
 
+    fn map(&self, found: &Estimate, read: &Read) -> Option<BodyMap> {
+        let mapped: Vec<usize> = found.mapped.iter().map(|&at| read.sensors[at]).collect();
+        sketch(&found.distances, self.of, &mapped, read.count())
+    }
+
     fn scene(&self, found: &Estimate, read: &Read) -> Scene {
         let count = read.count();
-        let frames = Frames::of(read.tactile, Frames::every(self.interval), ROOM);
+        let frames = Frames::of(read.tactile, 0, Frames::every(self.interval), Frames::ROOM);
         // A sensor that was left out felt nothing that counts.
         let mut touch = vec![0.0; frames.count * count];
         for (series, &sensor) in read.tactile.series().zip(read.sensors) {
@@ -120,25 +125,11 @@ impl Shown<'_> {
             sensors: count,
             touch,
             body: None,
-            map: map(found, read),
+            map: self.map(found, read),
             truth: self.truth.map(Parts::of_truth),
             estimate: Some(Parts { of, tree: found.tree.tree.iter().map(edge).collect() }),
         }
     }
-}
-
-/// The classical map of three dimensions; `None` where the distances give none.
-fn map(found: &Estimate, read: &Read) -> Option<BodyMap> {
-    const DIMS: usize = 3;
-    let map =
-        ClassicalScaling::new(&found.distances, DIMS).and_then(|scaling| scaling.coordinates(DIMS)).ok()?;
-    // A sensor whose distances were not computed has no place.
-    let mut coordinates = vec![f64::NAN; read.count() * DIMS];
-    for (at, &mapped) in found.mapped.iter().enumerate() {
-        coordinates[read.sensors[mapped] * DIMS..][..DIMS]
-            .copy_from_slice(&map.coordinates[at * DIMS..][..DIMS]);
-    }
-    Some(BodyMap { dims: DIMS, coordinates })
 }
 
 fn parts(found: &Estimate) -> Vec<PartLine> {

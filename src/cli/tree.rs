@@ -10,14 +10,16 @@ use serde::Serialize;
 use super::options::{TruthFiles, paper, with_default};
 use super::output::say;
 use crate::files::prepare_folder;
-use crate::files::tables::{read_parts, write_rows};
+use crate::files::tables::{read_parts, write_rows_of};
 use crate::files::touch::read_touch;
 use crate::numerics::partition::sizes;
 use crate::numerics::rng::stream;
 use crate::report::text_tree::text_tree;
 use crate::stages::co_motion::{CoMotion, MAX_COMPONENTS, Pair, co_motion};
 use crate::stages::evaluate::score;
+use crate::stages::noise::above_noise;
 use crate::stages::schema::Draw;
+use crate::stages::sense::Tactile;
 use crate::stages::tree::Truth;
 use crate::stages::usable::{Usable, usable};
 
@@ -73,12 +75,14 @@ impl Tree {
         let truth = self.truth.read(count)?;
         let Usable { tactile, sensors, dropped, lost_samples, .. } = usable(all);
         say_lost(input, lost_samples);
+        let tactile = without_noise(input, tactile);
         for (sensor, fault) in dropped.iter().filter(|(sensor, _)| parts[*sensor].is_some()) {
             eprintln!("bodyschema: {}: sensor {sensor} is {fault}, and is left out", input.display());
         }
         let own: Vec<Option<usize>> = sensors.iter().map(|&sensor| parts[sensor]).collect();
         let labels: Vec<usize> = own.iter().copied().flatten().collect();
         ensure!(!labels.is_empty(), "{}: no sensor that has a part feels anything", input.display());
+        refuse_truth(out)?;
         prepare_folder(out)?;
         let mut rng = stream(self.seed.unwrap_or(paper().experiment.seed), 1, "co-motion", 0);
         let components = self.components.map(|k| k as usize);
@@ -105,6 +109,29 @@ pub fn say_lost(input: &Path, lost_samples: usize) {
     }
 }
 
+/// What is above the noise, with a line that says so.
+pub fn without_noise(input: &Path, tactile: Tactile) -> Tactile {
+    let (tactile, noisy) = above_noise(tactile);
+    if noisy > 0 {
+        eprintln!(
+            "bodyschema: {}: {noisy} of {} sensors have noise; pressures within it count as no touch",
+            input.display(),
+            tactile.sensors()
+        );
+    }
+    tactile
+}
+
+/// Refuses a folder whose tree.csv is the true one, which would be lost.
+pub fn refuse_truth(out: &Path) -> Result<()> {
+    ensure!(
+        !out.join("labels.csv").is_file(),
+        "{}: holds true parts and their tree.csv (labels.csv), which would be written over; give another --out",
+        out.display()
+    );
+    Ok(())
+}
+
 /// Prints how parts and tree compare with the truth.
 pub fn print_score(draw: &Draw, truth: &Truth, eligible_ari: f64) -> Result<()> {
     let score = score(draw, truth, eligible_ari);
@@ -119,7 +146,7 @@ pub fn write(out: &Path, found: &CoMotion) -> Result<()> {
         parent: edge.parent,
         confidence: found.confidence(edge),
     });
-    write_rows(&out.join("tree.csv"), edges)?;
+    write_rows_of(&out.join("tree.csv"), &["child", "parent", "confidence"], edges)?;
     let pairs = found.pairs.iter().map(|pair| EdgeRow {
         part: pair.part,
         other: pair.other,
@@ -127,7 +154,8 @@ pub fn write(out: &Path, found: &CoMotion) -> Result<()> {
         confidence: pair.confidence,
         in_tree: pair.in_tree,
     });
-    Ok(write_rows(&out.join("edges.csv"), pairs)?)
+    let columns = ["part", "other", "agreement", "confidence", "in_tree"];
+    Ok(write_rows_of(&out.join("edges.csv"), &columns, pairs)?)
 }
 
 /// Prints the tree, with the confidence of each edge.

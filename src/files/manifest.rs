@@ -104,6 +104,11 @@ impl Manifest {
     }
 }
 
+/// The command by which this process was started; what is no text in it is replaced.
+pub fn arguments() -> Vec<String> {
+    std::env::args_os().map(|argument| argument.to_string_lossy().into_owned()).collect()
+}
+
 /// How a run went: when, by which command, and with what effort.
 #[derive(Debug, Serialize)]
 struct Circumstances {
@@ -120,7 +125,7 @@ struct Circumstances {
 /// If it cannot be written.
 pub fn write_circumstances(folder: &Path, (started, clock): (SystemTime, Instant)) -> Result<(), FileError> {
     let circumstances = Circumstances {
-        command: std::env::args().collect(),
+        command: arguments(),
         started: humantime::format_rfc3339_seconds(started).to_string(),
         seconds: clock.elapsed().as_secs_f64(),
         threads: rayon::current_num_threads(),

@@ -216,7 +216,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_written_is_read_back_and_a_missing_column_is_named() {
+    fn what_is_written_is_read_back_and_files_that_do_not_fit_are_named() {
         let folder = tempfile::tempdir().unwrap();
         let shapes = vec![
             Shape::Cylinder { radius: 0.1, length: 0.4 },

@@ -12,7 +12,7 @@ use serde::Deserialize;
 use serde_json::{Value, json};
 
 use super::error::FileError;
-use super::manifest::{HashedFile, MANIFEST, Manifest, write_json};
+use super::manifest::{HashedFile, MANIFEST, Manifest, arguments, write_json};
 use super::provenance::Provenance;
 use super::whole::read_text;
 
@@ -78,7 +78,7 @@ fn described(manifest: &Manifest, begun: SystemTime, ended: SystemTime) -> Value
             "@id": "#run",
             "@type": "CreateAction",
             "name": format!("Run of {what}"),
-            "description": std::env::args().collect::<Vec<_>>().join(" "),
+            "description": arguments().join(" "),
             "startTime": time(begun),
             "endTime": time(ended),
             "actionStatus": "http://schema.org/CompletedActionStatus",

@@ -24,13 +24,32 @@ use crate::stages::tree::Truth;
 /// # Panics
 /// If a row is no struct of plain values.
 pub fn write_rows<T: Serialize>(path: &Path, rows: impl IntoIterator<Item = T>) -> Result<(), FileError> {
+    write_rows_of(path, &[], rows)
+}
+
+/// As [`write_rows`], for a table that may have no row: its header is `columns`, the names of the fields.
+///
+/// # Errors
+/// If the file cannot be written.
+///
+/// # Panics
+/// If a row is no struct of plain values with these names.
+pub fn write_rows_of<T: Serialize>(
+    path: &Path,
+    columns: &[&str],
+    rows: impl IntoIterator<Item = T>,
+) -> Result<(), FileError> {
     write_whole(path, |file| {
         let mut writer = csv::Writer::from_writer(file);
+        if !columns.is_empty() {
+            writer.write_record(columns)?;
+        }
         for (at, row) in rows.into_iter().enumerate() {
             let Ok(Value::Object(row)) = serde_json::to_value(row) else { panic!("a row is a struct") };
-            if at == 0 {
+            if columns.is_empty() && at == 0 {
                 writer.write_record(row.keys())?;
             }
+            assert!(columns.is_empty() || row.keys().eq(columns), "a row has the columns of its header");
             writer.write_record(row.values().map(cell))?;
         }
         writer.flush()

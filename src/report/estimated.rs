@@ -43,6 +43,7 @@ pub fn page(estimated: &Estimated) -> String {
             head {
                 meta charset="utf-8";
                 meta name="viewport" content="width=device-width, initial-scale=1";
+                meta http-equiv="Content-Security-Policy" content=(viewer::page::POLICY);
                 title { "bodyschema: " (name) }
                 style { (PreEscaped(include_str!("style.css"))) (PreEscaped(viewer::page::STYLE)) }
             }

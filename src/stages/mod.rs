@@ -11,7 +11,7 @@
 //! | 6 | [`schema`] | body map → [`Draw`](schema::Draw)s: component of each sensor, tree | equations 1 to 22 |
 //! | 7 | [`evaluate`] | draw, truth → [`Score`](evaluate::Score): adjusted Rand index, tree right or wrong | section 5.2 |
 //!
-//! Beside the paper, [`usable`] drops sensors that tell nothing, and [`co_motion`] finds rigid parts and how they are joined.
+//! Beside the paper, [`usable`] drops sensors that tell nothing, [`noise`] what is no touch, and [`co_motion`] finds rigid parts and how they are joined.
 //! Beside stage 6, [`baselines`] cluster the same body map; [`mixture`] holds what both build on, [`tree`] the trees.
 //! M is the number of sensors, T the number of samples, N the number of levels, d the number of dimensions.
 //!
@@ -25,6 +25,7 @@ pub mod co_motion;
 pub mod distance;
 pub mod evaluate;
 pub mod mixture;
+pub mod noise;
 pub mod quantise;
 pub mod schema;
 pub mod sense;

@@ -11,6 +11,7 @@ use crate::settings::Settings;
 use crate::stages::co_motion::co_motion;
 use crate::stages::distance::information_metric;
 use crate::stages::evaluate::{joins, parts, parts_match, score};
+use crate::stages::noise::above_noise;
 use crate::stages::quantise::quantise;
 use crate::stages::schema::Draw;
 use crate::stages::sense::{Tactile, sense};
@@ -142,6 +143,7 @@ impl Movement<'_> {
         let Settings { motion, quantise: levels, experiment, .. } = self.settings;
         let &Recording { samples, noise } = seen.recording;
         let Usable { tactile, sensors, .. } = usable(tactile);
+        let (tactile, _) = above_noise(tactile);
         let own = sensors.iter().map(|&at| seen.truth.labels[at]).collect();
         let truth = Truth { labels: own, tree: seen.truth.tree.clone() };
         let mut rng = stream(experiment.seed, seen.simulation, "co-motion", 0);

@@ -22,9 +22,6 @@ use crate::stages::simulate::simulate;
 /// Some twenty epochs, s: at high p, the first of them may pass without a movement.
 const SHOWN: f64 = 100.0;
 
-/// Room for the pressures of all scenes of a report, bytes.
-const ROOM: usize = 1_000_000;
-
 /// Writes a scene for each p.
 ///
 /// # Errors
@@ -36,7 +33,7 @@ pub fn write(
     folder: &mut ResultFolder,
 ) -> Result<(), ExperimentError> {
     let first = || tasks.iter().zip(found).filter(|(task, _)| task.simulation == 1);
-    let room = ROOM / first().count().max(1);
+    let room = Frames::ROOM / first().count().max(1);
     for (task, found) in first() {
         let p = task.settings.motion.coordination;
         let at = task.conditions.iter().position(|condition| {
@@ -64,9 +61,10 @@ fn scene(task: &Task, found: &Found, at: usize, room: usize) -> Result<Scene, Ex
     let trajectory = simulate(&agent, motion, &physics, interval, &mut rng, &|| ())
         .map_err(|error| ExperimentError::Stage(error.to_string()))?;
     let felt = sense(&agent, &trajectory, tactile_sense);
-    let frames = Frames::of(&felt, Frames::every(Some(interval)), room);
+    let body = MovedBody::of(&agent, &trajectory);
+    let frames = Frames::of(&felt, body.shapes.len(), Frames::every(Some(interval)), room);
     let dimension = task.conditions[at].dimension;
-    let maps = found.body.as_ref().and_then(|body| body.maps.as_ref());
+    let maps = found.body.as_ref().and_then(|found| found.maps.as_ref());
     Ok(Scene {
         name: String::new(),
         frames,
@@ -74,7 +72,7 @@ fn scene(task: &Task, found: &Found, at: usize, room: usize) -> Result<Scene, Ex
         interval: Some(interval),
         sensors: felt.sensors(),
         touch: frames.of_touch(&felt),
-        body: Some(MovedBody::of(&agent, &trajectory)),
+        body: Some(body),
         map: maps.map(|maps| maps.in_dims(dimension)),
         truth: Some(Parts::of_truth(&agent.truth())),
         estimate: Some(Parts::of_draw(&found.best[at])),

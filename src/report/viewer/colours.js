@@ -18,11 +18,12 @@ function mix(a, b, share) {
   return a.map((x, at) => x + share * (b[at] - x));
 }
 
-// The colour of series number `at`; after those of the palette, ever paler ones.
+// The colour of series number `at`; after those of the palette, paler and darker ones in turns.
 function partColour(at) {
   if (at < 0) return NO_PART;
   const round = Math.floor(at / PALETTE.length);
-  return mix(PALETTE[at % PALETTE.length], [1, 1, 1], 1 - Math.pow(0.6, round));
+  const share = round === 0 ? 0 : Math.min(0.4 + 0.15 * Math.floor((round - 1) / 2), 0.75);
+  return mix(PALETTE[at % PALETTE.length], round % 2 ? [1, 1, 1] : [0, 0, 0], share);
 }
 
 // The colour of a level, 0 to 255.

@@ -7,14 +7,14 @@ use serde::Deserialize;
 use super::best_draw;
 use super::frames::Frames;
 use super::scene::{Parts, Scene, TreeEdge};
+use super::sketch::sketch;
+use crate::analysis::estimate::distances;
 use crate::files::moved_body::MovedBody;
 use crate::files::tables::{read_cells, read_parts, read_rows};
 use crate::files::touch::read_touch;
-use crate::files::{FileError, npy};
+use crate::files::{FileError, npy, read_text};
 use crate::settings::Settings;
-use crate::stages::body_map::{BodyMap, ClassicalScaling, scaled};
-use crate::stages::distance::information_metric;
-use crate::stages::quantise::quantise;
+use crate::stages::body_map::BodyMap;
 use crate::stages::sense::Tactile;
 use crate::stages::usable::usable;
 
@@ -34,8 +34,6 @@ pub struct Sources<'a> {
 /// # Errors
 /// If there are no pressures, or files do not fit each other.
 pub fn read(sources: &Sources, settings: &Settings) -> Result<Scene, FileError> {
-    /// Room for pressures, bytes.
-    const ROOM: usize = 1_000_000;
     let folder = sources.folder;
     let tactile = tactile(sources)?;
     let touch = read_touch(&tactile)?;
@@ -47,10 +45,11 @@ pub fn read(sources: &Sources, settings: &Settings) -> Result<Scene, FileError> 
     let interval = interval(folder);
     let labels = folder.join("labels.csv");
     let truth =
-        if labels.is_file() { Some(parts(&labels, &[folder.join("tree.csv")], sensors)?) } else { None };
+        if labels.is_file() { Some(true_parts(&labels, &folder.join("tree.csv"), sensors)?) } else { None };
     let found = sources.estimate.unwrap_or(folder);
     let file = found.join("parts.csv");
     let estimate = if file.is_file() {
+        check_estimate(found, sensors)?;
         // A tree beside labels is the true one.
         let trees: &[&str] =
             if found.join("labels.csv").is_file() { &["edges.csv"] } else { &["tree.csv", "edges.csv"] };
@@ -66,7 +65,8 @@ pub fn read(sources: &Sources, settings: &Settings) -> Result<Scene, FileError> 
     } else {
         None
     };
-    let frames = Frames::of(&touch, Frames::every(interval), ROOM);
+    let solids = body.as_ref().map_or(0, |body| body.shapes.len());
+    let frames = Frames::of(&touch, solids, Frames::every(interval), Frames::ROOM);
     let shown = frames.of_touch(&touch);
     let map = map(&[found, folder], touch, settings)?;
     Ok(Scene {
@@ -85,12 +85,12 @@ pub fn read(sources: &Sources, settings: &Settings) -> Result<Scene, FileError> 
 
 /// The file of the pressures.
 fn tactile(sources: &Sources) -> Result<PathBuf, FileError> {
-    if let Some(tactile) = sources.tactile {
-        return Ok(tactile.to_owned());
-    }
     let folder = sources.folder;
     if !folder.is_dir() {
         return Err(FileError::new(folder, "no such folder"));
+    }
+    if let Some(tactile) = sources.tactile {
+        return Ok(tactile.to_owned());
     }
     let names = ["tactile.npy", "tactile.csv"].map(|name| folder.join(name));
     names.into_iter().find(|path| path.is_file()).ok_or_else(|| {
@@ -136,6 +136,35 @@ struct EdgeRow {
     in_tree: Option<bool>,
 }
 
+/// True parts and tree. A tree with confidences is an estimated one, and left out.
+fn true_parts(labels: &Path, tree: &Path, sensors: usize) -> Result<Parts, FileError> {
+    let mut truth = parts(labels, &[tree.to_owned()], sensors)?;
+    truth.tree.retain(|edge| edge.confidence.is_none());
+    Ok(truth)
+}
+
+/// What `estimate` says of its input.
+#[derive(Deserialize)]
+struct Summary {
+    sensors: usize,
+}
+
+/// Whether an estimate is of so many sensors, where it says of how many.
+fn check_estimate(folder: &Path, sensors: usize) -> Result<(), FileError> {
+    let path = folder.join("summary.json");
+    if !path.is_file() {
+        return Ok(());
+    }
+    let summary: Summary = serde_json::from_str(&read_text(&path)?).map_err(|error| {
+        FileError::new(&path, format!("is not what `bodyschema estimate` writes: {error}"))
+    })?;
+    if summary.sensors == sensors {
+        return Ok(());
+    }
+    let message = format!("is of {} sensors, but the pressures are of {sensors}", summary.sensors);
+    Err(FileError::new(&path, message))
+}
+
 /// Parts and the first tree that exists; no tree is no error.
 fn parts(file: &Path, trees: &[PathBuf], sensors: usize) -> Result<Parts, FileError> {
     let of = read_parts(file, sensors)?;
@@ -155,10 +184,8 @@ fn parts(file: &Path, trees: &[PathBuf], sensors: usize) -> Result<Parts, FileEr
     Ok(Parts { of, tree })
 }
 
-/// The map of the first folder that has one, and else the classical one of three dimensions; `None` where pressures
-/// give none.
+/// The map of the first folder that has one, and else a sketch; `None` where pressures give none.
 fn map(folders: &[&Path], touch: Tactile, settings: &Settings) -> Result<Option<BodyMap>, FileError> {
-    const DIMS: usize = 3;
     let sensors = touch.sensors();
     if let Some(path) = folders.iter().map(|folder| folder.join("body-map.npy")).find(|path| path.is_file()) {
         let map = npy::read_body_map(&path)?;
@@ -169,20 +196,10 @@ fn map(folders: &[&Path], touch: Tactile, settings: &Settings) -> Result<Option<
         return Ok(Some(map));
     }
     let used = usable(touch);
-    if used.sensors.len() <= DIMS {
+    if used.sensors.is_empty() {
         return Ok(None);
     }
-    let distances = information_metric(&quantise(&used.tactile, &settings.quantise));
-    let distances = scaled(&distances, settings.map.of);
-    // Pressures that tell nothing apart have no map, which is no mistake.
-    let Ok(map) = ClassicalScaling::new(&distances, DIMS).and_then(|scaling| scaling.coordinates(DIMS))
-    else {
-        return Ok(None);
-    };
-    // A sensor that was left out has no place.
-    let mut coordinates = vec![f64::NAN; sensors * DIMS];
-    for (at, sensor) in used.sensors.into_iter().enumerate() {
-        coordinates[sensor * DIMS..][..DIMS].copy_from_slice(&map.coordinates[at * DIMS..][..DIMS]);
-    }
-    Ok(Some(BodyMap { dims: DIMS, coordinates }))
+    let (mapped, distances) = distances(&used.tactile, &settings.quantise);
+    let mapped: Vec<usize> = mapped.into_iter().map(|at| used.sensors[at]).collect();
+    Ok(sketch(&distances, settings.map.of, &mapped, sensors))
 }

@@ -16,6 +16,9 @@ pub struct Frames {
 }
 
 impl Frames {
+    /// Room for the frames of a page, bytes.
+    pub const ROOM: usize = 1_000_000;
+
     /// Most frames of one movement.
     const MOST: usize = 600;
 
@@ -24,12 +27,17 @@ impl Frames {
         interval.map_or(1, |interval| (0.2 / interval).round().clamp(1.0, 1e6) as usize)
     }
 
-    /// Frames of some pressures, from the first sample at which a sensor feels anything else than at first. `bytes` is the room for them, a
-    /// byte for each sensor and frame.
-    pub fn of(touch: &Tactile, every: usize, bytes: usize) -> Self {
-        let changes = |series: &[f32]| series.iter().position(|pressure| *pressure != series[0]);
+    /// Frames of some pressures and of so many solids, from the first sample at which a sensor feels anything else than at first. `bytes`
+    /// is the room for them: a frame takes a byte for each sensor, and the place and turn of each solid.
+    pub fn of(touch: &Tactile, solids: usize, every: usize, bytes: usize) -> Self {
+        const SOLID: usize = 14;
+        let changes = |series: &[f32]| {
+            let known = || series.iter().enumerate().filter(|(_, pressure)| pressure.is_finite());
+            let (_, first) = known().next()?;
+            known().find(|(_, pressure)| *pressure != first).map(|(at, _)| at)
+        };
         let first = touch.series().filter_map(changes).min().unwrap_or(0);
-        let room = (bytes / touch.sensors()).clamp(2, Self::MOST);
+        let room = (bytes / (touch.sensors() + SOLID * solids)).clamp(2, Self::MOST);
         // A short recording is shown whole.
         let first = if touch.samples <= room * every { 0 } else { first };
         Self { first, every, count: room.min((touch.samples - first).div_ceil(every)) }
@@ -56,12 +64,17 @@ mod tests {
         let mut series = vec![0.0; 1000];
         series[700] = 1.0;
         let touch = Tactile { samples: 1000, pressures: [vec![0.0; 1000], series].concat() };
-        assert_eq!(Frames::of(&touch, 2, 100), Frames { first: 700, every: 2, count: 50 });
-        assert_eq!(Frames::of(&touch, 2, 900), Frames { first: 700, every: 2, count: 150 });
-        assert_eq!(Frames::of(&touch, 2, 1000), Frames { first: 0, every: 2, count: 500 });
-        assert_eq!(Frames::of(&touch, 2, 100).samples().last(), Some(798));
+        assert_eq!(Frames::of(&touch, 0, 2, 100), Frames { first: 700, every: 2, count: 50 });
+        assert_eq!(Frames::of(&touch, 0, 2, 900), Frames { first: 700, every: 2, count: 150 });
+        assert_eq!(Frames::of(&touch, 0, 2, 1000), Frames { first: 0, every: 2, count: 500 });
+        assert_eq!(Frames::of(&touch, 0, 2, 100).samples().last(), Some(798));
+        // Solids take room, too, and a value that is no number is no touch.
+        assert_eq!(Frames::of(&touch, 1, 2, 160).count, 10);
+        let mut lost = touch.clone();
+        (lost.pressures[0], lost.pressures[1001]) = (f32::NAN, f32::NAN);
+        assert_eq!(Frames::of(&lost, 0, 2, 100).first, 700);
         // A body that feels nothing, and one of a single time.
         let still = Tactile { samples: 1, pressures: vec![0.0] };
-        assert_eq!(Frames::of(&still, 1, 1), Frames { first: 0, every: 1, count: 1 });
+        assert_eq!(Frames::of(&still, 0, 1, 1), Frames { first: 0, every: 1, count: 1 });
     }
 }

@@ -5,5 +5,6 @@ pub mod folder;
 pub mod frames;
 pub mod page;
 pub mod scene;
+pub mod sketch;
 pub mod stored;
 mod text;

@@ -16,7 +16,7 @@ const PROGRAMS: [&str; 5] = [
 pub const STYLE: &str = include_str!("viewer.css");
 
 /// A page may load nothing, from nowhere.
-const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'";
+pub const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'";
 
 /// A page with nothing but the viewer.
 pub fn page(title: &str, scenes: &[Value]) -> String {

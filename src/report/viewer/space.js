@@ -21,23 +21,36 @@ class Space {
   // `radius` is that of a ball around everything; `onTurn` is called when the view changes.
   constructor(canvas, radius, onTurn) {
     this.canvas = canvas;
+    this.shapes = [];
+    this.#prepare();
+    [this.radius, this.yaw, this.pitch, this.near, this.onTurn] = [radius, -1.1, 0.6, 1, onTurn];
+    // The share of the pixels across and up that are drawn: fewer where drawing is slow.
+    this.detail = 1;
+    // A phone may take the memory of the picture away, and give it back.
+    canvas.addEventListener("webglcontextlost", event => event.preventDefault());
+    canvas.addEventListener("webglcontextrestored", () => {
+      this.#prepare();
+      this.setSolids(this.shapes);
+      this.onTurn();
+    });
+    this.#listen();
+  }
+
+  #prepare() {
     const options = { antialias: true, preserveDrawingBuffer: true };
-    const gl = this.gl = canvas.getContext("webgl", options);
+    const gl = this.gl = this.canvas.getContext("webgl", options);
     if (!gl) throw new Error("no WebGL");
     this.points = program(gl, POINT_VERTEX, POINT_FRAGMENT, ["place", "colour"], ["view", "size"]);
     this.surface = program(gl, SOLID_VERTEX, SOLID_FRAGMENT, ["place", "normal"], ["view", "model", "eye", "colour"]);
     this.placeBuffer = gl.createBuffer();
     this.colourBuffer = gl.createBuffer();
     this.solids = [];
-    [this.radius, this.yaw, this.pitch, this.near, this.onTurn] = [radius, -1.1, 0.6, 1, onTurn];
-    // The share of the pixels across and up that are drawn: fewer where drawing is slow.
-    this.detail = 1;
-    this.#listen();
   }
 
   // Sets the shapes of the solids.
   setSolids(shapes) {
     const gl = this.gl;
+    this.shapes = shapes;
     this.solids = shapes.map(shape => {
       const { places, normals } = mesh(shape);
       const [placeBuffer, normalBuffer] = [places, normals].map(numbers => {
@@ -52,6 +65,7 @@ class Space {
 
   // Draws solids with their models and colours, points with theirs, and a ring around a marked one.
   draw(places, colours, size, marked, models = [], solidColours = []) {
+    if (this.gl.isContextLost()) return;
     const { gl, canvas } = this, ratio = this.detail * Math.min(window.devicePixelRatio || 1, 2);
     const [width, height] = [canvas.clientWidth, canvas.clientHeight].map(x => Math.max(1, Math.round(x * ratio)));
     if (canvas.width !== width || canvas.height !== height) [canvas.width, canvas.height] = [width, height];

@@ -21,14 +21,15 @@ pub fn text(scene: &Scene) -> String {
     format!("{}\n", scene.data())
 }
 
-/// Names of all scenes of a folder of results, as [`name`] gives them, p rising.
+/// Names of the files of all scenes of a folder of results, p rising.
 pub fn names(folder: &Path) -> Vec<String> {
     let Ok(entries) = fs::read_dir(folder.join(FOLDER)) else { return Vec::new() };
     let coordination = |name: &str| name.strip_prefix("p-")?.strip_suffix(".json")?.parse::<f64>().ok();
-    let mut found: Vec<f64> =
-        entries.filter_map(|entry| coordination(entry.ok()?.file_name().to_str()?)).collect();
-    found.sort_by(f64::total_cmp);
-    found.into_iter().map(name).collect()
+    let named = |name: String| Some((coordination(&name)?, name));
+    let mut found: Vec<(f64, String)> =
+        entries.filter_map(|entry| named(entry.ok()?.file_name().into_string().ok()?)).collect();
+    found.sort_by(|a, b| a.0.total_cmp(&b.0));
+    found.into_iter().map(|(_, name)| format!("{FOLDER}/{name}")).collect()
 }
 
 /// All scenes of a folder of results, p rising; none if it has none.
@@ -38,8 +39,15 @@ pub fn names(folder: &Path) -> Vec<String> {
 pub fn read(folder: &Path) -> Result<Vec<Value>, FileError> {
     let read = |name: String| {
         let path = folder.join(name);
-        serde_json::from_str(&read_text(&path)?)
-            .map_err(|error| FileError::new(&path, format!("is no scene: {error}; run the experiment again")))
+        let wrong =
+            |what: String| FileError::new(&path, format!("is no scene: {what}; run the experiment again"));
+        let scene: Value =
+            serde_json::from_str(&read_text(&path)?).map_err(|error| wrong(error.to_string()))?;
+        if scene["frames"].is_u64() {
+            Ok(scene)
+        } else {
+            Err(wrong("it does not say of how many frames".to_owned()))
+        }
     };
     names(folder).into_iter().map(read).collect()
 }

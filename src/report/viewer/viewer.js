@@ -37,7 +37,8 @@ class Viewer {
   }
 
   play(playing) {
-    this.playing = playing;
+    // One time cannot move.
+    this.playing = playing &&= this.scene.frames > 1;
     const button = this.find(".play");
     button.textContent = playing ? "Pause" : "Play";
     if (!playing) {
@@ -50,8 +51,8 @@ class Viewer {
       if (!this.section.isConnected) return;
       const passed = last === null ? 0 : Math.min((now - last) / 1000, 0.2);
       last = now;
-      // Samples of unknown length pass twenty a second.
-      const frames = passed * (this.scene.unit === "s" ? 1 / this.scene.step : 20);
+      // Samples of unknown length pass twenty a second, and none is shown for longer than half a second.
+      const frames = passed * (this.scene.unit === "s" ? Math.max(1 / this.scene.step, 2) : 20);
       this.frame = (this.frame + frames) % Math.max(this.scene.frames - 1, 1);
       if (this.map && !still.matches && !this.turned) this.map.yaw += 0.15 * passed;
       this.draw();
@@ -74,19 +75,6 @@ class Viewer {
     return [this.body, this.map].filter(space => space);
   }
 
-  // Frames a second at which this machine can draw, by drawing so many and waiting for each. Other programs take time from many
-  // frames, so that the tenth that is drawn fastest says what drawing itself takes.
-  measure(count) {
-    const pixel = new Uint8Array(4), times = [];
-    for (let at = 0; at < count; at++) {
-      const begun = performance.now();
-      this.seek(at % (this.scene.frames - 1) + 0.5);
-      for (const space of this.spaces) space.gl.readPixels(0, 0, 1, 1, space.gl.RGBA, space.gl.UNSIGNED_BYTE, pixel);
-      times.push(performance.now() - begun);
-    }
-    return 1000 / times.sort((a, b) => a - b)[Math.floor(count / 10)];
-  }
-
   draw() {
     const { scene, frame } = this;
     const now = Math.round(frame), colours = this.#colours(now), marked = this.pointed ?? this.marked;
@@ -94,7 +82,7 @@ class Viewer {
       const { places, models } = this.pose(frame);
       this.body.draw(places, colours, this.body.radius / 48, marked, models, this.solidColours);
     }
-    if (this.map) this.map.draw(scene.map, colours, this.map.radius / 36, this.known(marked) ? marked : null);
+    if (this.map) this.map.draw(this.mapPlaces, colours, this.map.radius / 36, this.known(marked) ? marked : null);
     if (this.raster) this.#drawRaster(marked);
     const slider = this.find(".time input"), time = this.clock(frame);
     slider.value = frame;
@@ -179,12 +167,15 @@ class Viewer {
     try {
       if (scene.body) {
         this.body = this.bodySpace ??= this.#space(".panel.body canvas", size(scene.body), (at, eye) => this.#faces(at, eye));
+        this.body.radius = size(scene.body);
         this.body.setSolids(scene.body.solids);
         this.solidColours = scene.body.solids.map(() => [0.93, 0.93, 0.93]);
       }
       if (scene.map) {
         this.map = this.mapSpace ??= this.#space(".panel.map canvas", 1, at => this.known(at));
         this.map.radius = spread(scene.map);
+        // A sensor without a place is put where nobody looks.
+        this.mapPlaces = scene.map.map((number, at) => this.known(Math.floor(at / 3)) ? number : 1e6 * this.map.radius);
       }
     } catch {
       [this.body, this.map] = [null, null];
@@ -222,6 +213,7 @@ class Viewer {
     this.#legend();
     const slider = this.find(".time input");
     slider.max = frames - 1;
+    this.find(".play").disabled = frames < 2;
     this.find(".sensor input").max = scene.sensors - 1;
     this.seek(this.frame);
   }
@@ -320,7 +312,8 @@ class Viewer {
       const { truth, estimate, touch } = this.scene;
       const part = (name, parts) => parts ? `, ${name} part ${parts.of[marked] ?? "none"}` : "";
       const share = this.level(marked, frame) / 255;
-      const felt = this.playing ? "" : `, feels ${Number((share * share * touch.greatest).toPrecision(2))}${this.scene.body ? " Pa" : ""}`;
+      const most = this.level(marked, frame) === 255 ? "at least " : "";
+      const felt = this.playing ? "" : `, feels ${most}${Number((share * share * touch.greatest).toPrecision(2))}${this.scene.body ? " Pa" : ""}`;
       words = `Sensor ${marked}${part("true", truth)}${part("estimated", estimate)}${felt}`;
     } else if (this.chosen) {
       words = `Part ${this.chosen.part}: ${this.chosen.of.filter(part => part === this.chosen.part).length} sensors`;
