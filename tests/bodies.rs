@@ -86,7 +86,12 @@ fn the_study_of_bodies_repeats_itself_and_names_mistakes() {
     assert!(page.contains("| chain-3 | 3 | ") && page.contains("| 0.5 | 500 | 0.1 | 1 |"), "{page}");
     assert_eq!(fs::read_to_string(at("whole/recordings.csv")).unwrap().lines().count(), 5);
     assert!(study("bodies.toml", "again").status.success());
-    for file in ["recordings.csv", "edges.csv", "bodies.md", "manifest.json"] {
+    // Page and picture are made from the tables alone.
+    fs::remove_dir_all(at("again/figures")).unwrap();
+    fs::remove_file(at("again/bodies.md")).unwrap();
+    let plot = Command::new(env!("CARGO_BIN_EXE_bodyschema")).arg("plot").arg(at("again")).output().unwrap();
+    assert!(plot.status.success(), "{plot:?}");
+    for file in ["recordings.csv", "edges.csv", "bodies.md", "figures/bodies.svg", "manifest.json"] {
         assert_eq!(
             fs::read(at("whole").join(file)).unwrap(),
             fs::read(at("again").join(file)).unwrap(),

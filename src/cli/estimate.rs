@@ -70,6 +70,7 @@ struct Summary {
     sensors: usize,
     dropped: usize,
     lost_samples: usize,
+    noisy: usize,
     signed: bool,
     parts: usize,
     seed: u64,
@@ -87,7 +88,7 @@ impl Estimate {
         let truth = self.truth.read(count)?;
         let Usable { tactile, sensors, dropped, lost_samples, samples } = usable(all);
         say_lost(input, lost_samples);
-        let tactile = without_noise(input, tactile);
+        let (tactile, noisy) = without_noise(input, tactile);
         ensure!(
             sensors.len() >= MIN_SENSORS,
             "{}: {} of {count} sensors feel anything that can be used, but parts can be told apart from {MIN_SENSORS} on; see `bodyschema tree` \
@@ -108,8 +109,14 @@ impl Estimate {
         let mut rng = stream(seed, 1, "co-motion", 0);
         let found = estimate(&tactile, &settings.quantise, &mut rng, &|| bar.inc(1));
         bar.finish_and_clear();
-        let read =
-            Read { tactile: &tactile, sensors: &sensors, dropped: &dropped, samples: &samples, lost_samples };
+        let read = Read {
+            tactile: &tactile,
+            sensors: &sensors,
+            dropped: &dropped,
+            samples: &samples,
+            lost_samples,
+            noisy,
+        };
         let summary = write(out, &found, &read, seed)?;
         let shown = Shown {
             name: in_file(),
@@ -146,7 +153,7 @@ impl Estimate {
 
 /// Writes all files.
 fn write(out: &Path, found: &estimate::Estimate, read: &Read, seed: u64) -> Result<Summary> {
-    let &Read { tactile, sensors, dropped, lost_samples, .. } = read;
+    let &Read { tactile, sensors, dropped, lost_samples, noisy, .. } = read;
     let parts = sensors.iter().enumerate().map(|(at, &sensor)| PartRow {
         sensor,
         part: found.parts.labels[at],
@@ -163,6 +170,7 @@ fn write(out: &Path, found: &estimate::Estimate, read: &Read, seed: u64) -> Resu
         sensors: sensors.len() + dropped.len(),
         dropped: dropped.len(),
         lost_samples,
+        noisy,
         signed: is_signed(tactile),
         parts: found.tree.parts.len(),
         seed,

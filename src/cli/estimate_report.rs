@@ -27,6 +27,8 @@ pub struct Read<'a> {
     pub samples: &'a [usize],
     /// How many were not.
     pub lost_samples: usize,
+    /// Sensors with noise.
+    pub noisy: usize,
 }
 
 impl Read<'_> {
@@ -91,6 +93,7 @@ impl Shown<'_> {
             ("samples", read.tactile.samples.to_string()),
             ("samples left out", read.lost_samples.to_string()),
             ("sensors left out", dropped),
+            ("sensors with noise, which counts as no touch", read.noisy.to_string()),
             ("seed", self.seed.to_string()),
             ("revision", env!("BODYSCHEMA_REVISION").to_owned()),
         ]

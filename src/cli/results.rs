@@ -8,7 +8,7 @@ use clap::Args;
 
 use super::output::say;
 use crate::experiments::verify::{Finding, Outcome, against_manifest, against_reference};
-use crate::experiments::{compare, multiverse, sensitivity};
+use crate::experiments::{bodies, compare, multiverse, sensitivity};
 use crate::files::manifest::Manifest;
 use crate::report::{page, plot};
 
@@ -17,7 +17,8 @@ use crate::report::{page, plot};
 /// Reads DIR/figures/*.csv and writes an .svg beside each; then, where DIR holds a finished experiment, report.html from
 /// its claims.csv and manifest.json. Where DIR holds a sensitivity study: its pictures and sensitivity.md, from
 /// sensitivity.csv and design.toml. Where it holds a comparison: its pictures and comparison.md. Where it holds a
-/// multiverse: its tables, pictures and multiverse.md, from the specifications.
+/// multiverse: its tables, pictures and multiverse.md, from the specifications. Where it holds a study of bodies: bodies.md and its
+/// picture.
 #[derive(Args)]
 pub struct Plot {
     /// Folder of an experiment or study
@@ -42,6 +43,11 @@ impl Plot {
         if multiverse::is_multiverse(folder) {
             multiverse::redraw(folder)?;
             say(format!("multiverse.md, its tables and pictures in {}", folder.display()))?;
+            return Ok(ExitCode::SUCCESS);
+        }
+        if bodies::is_study(folder) {
+            bodies::redraw(folder)?;
+            say(format!("bodies.md and its picture in {}", folder.display()))?;
             return Ok(ExitCode::SUCCESS);
         }
         let figures = folder.join("figures");

@@ -75,7 +75,7 @@ impl Tree {
         let truth = self.truth.read(count)?;
         let Usable { tactile, sensors, dropped, lost_samples, .. } = usable(all);
         say_lost(input, lost_samples);
-        let tactile = without_noise(input, tactile);
+        let (tactile, _) = without_noise(input, tactile);
         for (sensor, fault) in dropped.iter().filter(|(sensor, _)| parts[*sensor].is_some()) {
             eprintln!("bodyschema: {}: sensor {sensor} is {fault}, and is left out", input.display());
         }
@@ -109,8 +109,8 @@ pub fn say_lost(input: &Path, lost_samples: usize) {
     }
 }
 
-/// What is above the noise, with a line that says so.
-pub fn without_noise(input: &Path, tactile: Tactile) -> Tactile {
+/// What is above the noise, and how many sensors have noise, with a line that says so.
+pub fn without_noise(input: &Path, tactile: Tactile) -> (Tactile, usize) {
     let (tactile, noisy) = above_noise(tactile);
     if noisy > 0 {
         eprintln!(
@@ -119,7 +119,7 @@ pub fn without_noise(input: &Path, tactile: Tactile) -> Tactile {
             tactile.sensors()
         );
     }
-    tactile
+    (tactile, noisy)
 }
 
 /// Refuses a folder whose tree.csv is the true one, which would be lost.

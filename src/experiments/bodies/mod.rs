@@ -7,4 +7,4 @@ mod peers;
 mod run;
 
 pub use self::design::Design;
-pub use self::run::study;
+pub use self::run::{is_study, redraw, study};

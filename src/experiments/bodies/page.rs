@@ -6,6 +6,7 @@ use crate::analysis::published::Unit;
 use crate::analysis::statistics::{mean, rate};
 use crate::report::markdown::{row, rule};
 use crate::report::numbers;
+use crate::report::plot::effects::{Cell, Column, Line};
 
 /// Lower ends of the bins of confidence.
 const BINS: [f64; 6] = [0.0, 0.5, 0.8, 0.95, 0.99, 1.0];
@@ -24,63 +25,115 @@ const METHODS: [(&str, Right); 7] = [
     ("DPGMM + Prim", |row| row.dpgmm_prim_right),
 ];
 
-/// The page.
-pub fn page(design: &Design, rows: &[&Row], edges: &[&EdgeRow]) -> String {
-    let mut lines = vec![
+/// The picture, in the folder of the study.
+pub const PICTURE: &str = "figures/bodies.svg";
+
+/// What a page is made of.
+pub struct Page<'a> {
+    /// What was studied.
+    pub design: &'a Design,
+    /// A row for each recording.
+    pub rows: &'a [Row],
+    /// A row for each edge.
+    pub edges: &'a [EdgeRow],
+}
+
+impl Page<'_> {
+    /// The rows of a recording at p.
+    fn rows_of(&self, p: f64, recording: &Recording) -> Vec<&Row> {
+        self.rows.iter().filter(|row| is_of(row, p, recording)).collect()
+    }
+
+    /// The picture: how often each method is right, of each recording at each p.
+    pub fn picture(&self) -> (Vec<Column>, Vec<Line>) {
+        let column = |(name, _): &(&str, Right)| Column {
+            title: name.replacen(' ', "\n", 1),
+            share: true,
+            published: None,
+            accepted: None,
+        };
+        let cell = |rows: &[&Row], right: Right| -> Cell {
+            let rate = rate(rows.iter().filter(|row| right(row)).count(), rows.len());
+            Some((rate.value?, rate.interval))
+        };
+        let line = |p: f64, recording: &Recording| {
+            let own = self.rows_of(p, recording);
+            let noise =
+                if recording.noise > 0.0 { format!(", noise {}", recording.noise) } else { String::new() };
+            Line {
+                label: format!("p = {p}, T = {}{noise}", recording.samples),
+                cells: METHODS.map(|(_, right)| cell(&own, right)).to_vec(),
+            }
+        };
+        let recordings = &self.design.recordings;
+        let lines = self
+            .design
+            .coordinations
+            .iter()
+            .flat_map(|&p| recordings.iter().map(move |recording| line(p, recording)));
+        (METHODS.iter().map(column).collect(), lines.collect())
+    }
+
+    /// The page.
+    pub fn text(&self) -> String {
+        let &Self { design, rows, edges } = self;
+        let mut lines = vec![
         "# Parts and tree of any body\n".to_owned(),
         about(design, rows),
         "\n## How often is it right?\n".to_owned(),
         "Parts are right if each estimated part is one true part by most of its sensors, and the other way round; a tree is \
          right if its parts are and all its edges are. Trees of nearest sensors and of Chow and Liu are over the same \
          estimated parts. DPGMM-LJ and DPGMM + Prim: the draw of highest log posterior of all chains, on a body map of 14 \
-         dimensions. In brackets: 95 % intervals (Wilson).\n"
+         dimensions. In brackets: 95 % intervals (Wilson), as if all movements were alike; they differ by body, as the next table shows.\n"
             .to_owned(),
+        format!("![How often each method is right]({PICTURE})\n"),
     ];
-    let header = ["p", "T", "noise", "n"].into_iter().chain(METHODS.map(|(name, _)| name));
-    lines.push(row(header));
-    lines.push(rule(4 + METHODS.len()));
-    for &p in &design.coordinations {
-        for recording in &design.recordings {
-            let own: Vec<&Row> = rows.iter().copied().filter(|row| is_of(row, p, recording)).collect();
-            let cells = [
-                p.to_string(),
-                recording.samples.to_string(),
-                recording.noise.to_string(),
-                own.len().to_string(),
-            ];
-            lines.push(row(cells.into_iter().chain(METHODS.map(|(_, right)| share(&own, right)))));
+        let header = ["p", "T", "noise", "n"].into_iter().chain(METHODS.map(|(name, _)| name));
+        lines.push(row(header));
+        lines.push(rule(4 + METHODS.len()));
+        for &p in &design.coordinations {
+            for recording in &design.recordings {
+                let own = self.rows_of(p, recording);
+                let cells = [
+                    p.to_string(),
+                    recording.samples.to_string(),
+                    recording.noise.to_string(),
+                    own.len().to_string(),
+                ];
+                lines.push(row(cells.into_iter().chain(METHODS.map(|(_, right)| share(&own, right)))));
+            }
         }
-    }
-    lines.push("\n## Body by body\n".to_owned());
-    let Some(longest) = longest(design) else { return lines.join("\n") };
-    lines.push(format!(
+        lines.push("\n## Body by body\n".to_owned());
+        let Some(longest) = longest(design) else { return lines.join("\n") };
+        lines.push(format!(
         "Of {} samples with noise {}: in how many of {} movements the tree over the estimated parts is right, and the mean \
          adjusted Rand index.\n",
         longest.samples, longest.noise, design.movements
     ));
-    let header = ["body".to_owned(), "parts".to_owned()];
-    lines.push(row(header.into_iter().chain(design.coordinations.iter().map(|p| format!("p = {p}")))));
-    lines.push(rule(2 + design.coordinations.len()));
-    for body in rows.chunk_by(|a, b| a.body == b.body) {
-        let at = |p: &f64| {
-            let own: Vec<&Row> = body.iter().copied().filter(|row| is_of(row, *p, &longest)).collect();
-            let right = own.iter().filter(|row| row.tree_right).count();
-            let ari: Vec<f64> = own.iter().map(|row| row.ari).collect();
-            format!("{right} of {} ({:.2})", own.len(), mean(&ari).value.unwrap_or(0.0))
-        };
-        let first = [body[0].body.clone(), body[0].true_parts.to_string()];
-        lines.push(row(first.into_iter().chain(design.coordinations.iter().map(at))));
+        let header = ["body".to_owned(), "parts".to_owned()];
+        lines.push(row(header.into_iter().chain(design.coordinations.iter().map(|p| format!("p = {p}")))));
+        lines.push(rule(2 + design.coordinations.len()));
+        for body in rows.chunk_by(|a, b| a.body == b.body) {
+            let at = |p: &f64| {
+                let own: Vec<&Row> = body.iter().filter(|row| is_of(row, *p, &longest)).collect();
+                let right = own.iter().filter(|row| row.tree_right).count();
+                let ari: Vec<f64> = own.iter().map(|row| row.ari).collect();
+                format!("{right} of {} ({:.2})", own.len(), mean(&ari).value.unwrap_or(0.0))
+            };
+            let first = [body[0].body.clone(), body[0].true_parts.to_string()];
+            lines.push(row(first.into_iter().chain(design.coordinations.iter().map(at))));
+        }
+        lines.push("\n## Are the confidences right?\n".to_owned());
+        lines.push("All edges of all estimated trees, by their confidence.\n".to_owned());
+        lines.push(row(["confidence", "edges", "mean confidence", "right"]));
+        lines.push(rule(4));
+        lines.extend(calibration(edges));
+        lines.push(String::new());
+        lines.join("\n")
     }
-    lines.push("\n## Are the confidences right?\n".to_owned());
-    lines.push("All edges of all estimated trees, by their confidence.\n".to_owned());
-    lines.push(row(["confidence", "edges", "mean confidence", "right"]));
-    lines.push(rule(4));
-    lines.extend(calibration(edges));
-    lines.push(String::new());
-    lines.join("\n")
 }
 
-fn about(design: &Design, rows: &[&Row]) -> String {
+fn about(design: &Design, rows: &[Row]) -> String {
     let unresolved = rows.iter().filter(|row| !row.resolved).count();
     let resolved = match unresolved {
         0 => "The physics step resolves all movements.".to_owned(),
@@ -126,12 +179,12 @@ fn written(right: usize, n: usize) -> String {
     }
 }
 
-fn calibration(edges: &[&EdgeRow]) -> Vec<String> {
+fn calibration(edges: &[EdgeRow]) -> Vec<String> {
     let bin = |(at, &low): (usize, &f64)| {
         let high = BINS.get(at + 1).copied();
         let within =
-            |edge: &&&EdgeRow| edge.confidence >= low && high.is_none_or(|high| edge.confidence < high);
-        let own: Vec<&&EdgeRow> = edges.iter().filter(within).collect();
+            |edge: &&EdgeRow| edge.confidence >= low && high.is_none_or(|high| edge.confidence < high);
+        let own: Vec<&EdgeRow> = edges.iter().filter(within).collect();
         let confidences: Vec<f64> = own.iter().map(|edge| edge.confidence).collect();
         let name = high.map_or("100 %".to_owned(), |high| {
             format!("{} to {} %", numbers::percent(low), numbers::percent(high))

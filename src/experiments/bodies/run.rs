@@ -9,12 +9,21 @@ use super::super::error::ExperimentError;
 use super::super::progress::progress;
 use super::design::Design;
 use super::movement::{EdgeRow, Found, Movement, Row};
-use super::page::page;
+use super::page::{PICTURE, Page};
 use crate::files::checkpoint::Checkpoints;
 use crate::files::manifest::Manifest;
 use crate::files::result_folder::ResultFolder;
+use crate::files::tables::read_rows;
+use crate::files::{FileError, prepare_folder, read_text, write_text};
+use crate::report::plot;
 
-/// Runs the study, and writes into `out`: recordings.csv, edges.csv, bodies.md, design.toml and manifest.json.
+const ROWS: &str = "recordings.csv";
+const EDGES: &str = "edges.csv";
+const COPY: &str = "design.toml";
+const PAGE: &str = "bodies.md";
+
+/// Runs the study, and writes into `out`: recordings.csv, edges.csv, design.toml and manifest.json, and, by [`redraw`], bodies.md and
+/// figures/bodies.svg.
 ///
 /// A study that was interrupted goes on from the movements that it finished.
 ///
@@ -69,11 +78,34 @@ pub fn study(design: &Design, text: &str, path: &Path, out: &Path) -> Result<(),
     let found: Vec<Found> = found.into_iter().map(|(_, found)| found).collect();
     let rows: Vec<&Row> = found.iter().flat_map(|found| &found.rows).collect();
     let edges: Vec<&EdgeRow> = found.iter().flat_map(|found| &found.edges).collect();
-    folder.write_rows("recordings.csv", &rows)?;
-    folder.write_rows("edges.csv", &edges)?;
-    folder.write_text("design.toml", text)?;
-    folder.write_text("bodies.md", &page(design, &rows, &edges))?;
+    folder.write_rows(ROWS, &rows)?;
+    folder.write_rows(EDGES, &edges)?;
+    folder.write_text(COPY, text)?;
     folder.write_manifest(Manifest::of_study("bodies", design.seed))?;
+    redraw(out)?;
     checkpoints.clear()?;
     Ok(())
+}
+
+/// Whether a folder holds a finished study of bodies.
+pub fn is_study(folder: &Path) -> bool {
+    [ROWS, EDGES, COPY].iter().all(|name| folder.join(name).is_file())
+}
+
+/// Makes the page and the picture of a study again, from its tables and design alone.
+///
+/// # Errors
+/// If they are not what a study wrote, or a file cannot be written.
+pub fn redraw(folder: &Path) -> Result<(), ExperimentError> {
+    let path = folder.join(COPY);
+    let design = Design::parse(&read_text(&path)?, &path)?;
+    let rows: Vec<Row> = read_rows(&folder.join(ROWS))?;
+    let edges: Vec<EdgeRow> = read_rows(&folder.join(EDGES))?;
+    let page = Page { design: &design, rows: &rows, edges: &edges };
+    write_text(&folder.join(PAGE), &page.text())?;
+    let (columns, lines) = page.picture();
+    let picture = plot::effects::render(&columns, &lines, false);
+    let picture = picture.map_err(|error| FileError::new(&folder.join(ROWS), error.0))?;
+    prepare_folder(&folder.join("figures"))?;
+    Ok(write_text(&folder.join(PICTURE), &picture)?)
 }

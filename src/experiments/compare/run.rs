@@ -62,7 +62,7 @@ pub fn redraw(folder: &Path) -> Result<Vec<String>, ExperimentError> {
     let mut written = Vec::new();
     for (name, claims) in page.pictures() {
         let (columns, lines) = page.picture(claims);
-        let picture = plot::effects::render(&columns, &lines);
+        let picture = plot::effects::render(&columns, &lines, true);
         let picture = picture.map_err(|error| FileError::new(&folder.join(TABLE), error.0))?;
         write_text(&folder.join(&name), &picture)?;
         written.push(name);

@@ -62,7 +62,7 @@ pub fn redraw(folder: &Path) -> Result<Vec<String>, ExperimentError> {
     let mut written = Vec::new();
     for factor in &design.factors {
         let name = format!("figures/{}.svg", factor.name);
-        let picture = plot::effects::render(&columns, &page.lines(&factor.name));
+        let picture = plot::effects::render(&columns, &page.lines(&factor.name), true);
         let picture = picture.map_err(|error| FileError::new(&folder.join(TABLE), error.0))?;
         write_text(&folder.join(&name), &picture)?;
         written.push(name);

@@ -1,4 +1,4 @@
-//! Render what each value of one setting gives: a line for each value, a panel for each result.
+//! Render what each of some conditions gives, such as values of one setting: a line for each, a panel for each result.
 
 use std::ops::Range;
 
@@ -17,7 +17,7 @@ pub type Cell = Option<(f64, Option<(f64, f64)>)>;
 /// A line of the picture.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Line {
-    /// What stands on its left; the first line is the default.
+    /// What stands on its left.
     pub label: String,
     /// One for each panel.
     pub cells: Vec<Cell>,
@@ -83,22 +83,22 @@ impl Layout {
     }
 }
 
-/// Renders the picture.
+/// Renders the picture. With `default`, the first line is what the others are compared with, and in another colour.
 ///
 /// # Errors
 /// If a value cannot be placed.
-pub fn render(columns: &[Column], lines: &[Line]) -> Result<String, PlotError> {
+pub fn render(columns: &[Column], lines: &[Line], default: bool) -> Result<String, PlotError> {
     let finite = lines.iter().flat_map(|line| line.cells.iter().flatten()).map(|(value, _)| *value);
     check("value", finite, -1e6, 1e6)?;
     let layout = Layout::new(columns.len(), lines);
     render_svg(TOP + layout.inside() + X_BARE + 4.0, |canvas| {
-        render_labels(canvas, &layout)?;
+        render_labels(canvas, &layout, default)?;
         for (at, column) in columns.iter().enumerate() {
             let cells: Vec<Cell> = lines.iter().map(|line| line.cells.get(at).copied().flatten()).collect();
             let panel = render_panel(canvas, &layout, at, column, &cells)?;
-            render_references(canvas, &panel, column, cells[0])?;
+            render_references(canvas, &panel, column, if default { cells[0] } else { None })?;
             for (row, cell) in cells.iter().enumerate() {
-                let colour = if row == 0 { VERMILLION } else { BLUE };
+                let colour = if default && row == 0 { VERMILLION } else { BLUE };
                 render_cell(canvas, &panel, (layout.centre(at), layout.middle(row)), cell, colour)?;
             }
         }
@@ -107,9 +107,9 @@ pub fn render(columns: &[Column], lines: &[Line]) -> Result<String, PlotError> {
 }
 
 /// The labels on the left, that of the default in another colour.
-fn render_labels(canvas: &Canvas, layout: &Layout) -> Rendered {
+fn render_labels(canvas: &Canvas, layout: &Layout, default: bool) -> Rendered {
     for (row, label) in layout.labels.iter().enumerate() {
-        let colour = if row == 0 { VERMILLION } else { INK };
+        let colour = if default && row == 0 { VERMILLION } else { INK };
         for (at, text) in label.iter().enumerate() {
             let y = layout.middle(row) + 14.0 * (at as f64 - (label.len() - 1) as f64 / 2.0);
             canvas.text(text, (LABELS - 4.0, y), Anchor::End, SMALL, colour)?;
