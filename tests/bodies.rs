@@ -5,6 +5,14 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use bodyschema::files::body::{NamedBody, read_body};
+use bodyschema::internals::estimate;
+use bodyschema::numerics::partition::adjusted_rand_index;
+use bodyschema::numerics::rng::stream;
+use bodyschema::settings::Settings;
+use bodyschema::stages::noise::above_noise;
+use bodyschema::stages::sense::{Tactile, sense};
+use bodyschema::stages::simulate::simulate;
+use rand_distr::{Distribution, StandardNormal};
 
 fn bodies() -> Vec<(PathBuf, NamedBody)> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("bodies");
@@ -62,6 +70,35 @@ fn a_body_is_simulated_and_its_parts_are_named() {
     let told = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(2));
     assert!(told.contains("part `trunk`: it lacks centre") && told.lines().count() == 1, "{told}");
+}
+
+#[test]
+fn noise_costs_fewer_parts_if_it_counts_as_no_touch() {
+    let mut settings = Settings::paper();
+    (settings.motion.coordination, settings.motion.epoch) = (0.5, 1000);
+    (settings.physics.duration, settings.physics.step) = (1000.0, 0.005);
+    let Settings { motion, physics, sense: tactile_sense, quantise, .. } = &settings;
+    for name in ["star", "chain-6"] {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("bodies/{name}.toml"));
+        let NamedBody { agent, .. } = read_body(&path).unwrap();
+        let rng = &mut stream(11, 1, "motion", 0);
+        let trajectory = simulate(&agent, motion, physics, tactile_sense.interval, rng, &|| ()).unwrap();
+        let mut tactile = sense(&agent, &trajectory, tactile_sense);
+        for series in tactile.pressures.chunks_mut(tactile.samples) {
+            let squares: f32 = series.iter().map(|pressure| pressure * pressure).sum();
+            let deviation = 0.1 * (squares / series.len() as f32).sqrt();
+            for pressure in series {
+                let error: f32 = StandardNormal.sample(rng);
+                *pressure = (*pressure + deviation * error).max(0.0);
+            }
+        }
+        let agreement = |tactile: &Tactile| {
+            let found = estimate(tactile, quantise, &mut stream(1, 1, "co-motion", 0), &|| ());
+            adjusted_rand_index(&found.parts.labels, &agent.labels())
+        };
+        let (felt, cut) = (agreement(&tactile), agreement(&above_noise(tactile).0));
+        assert!(cut > 0.8 && cut > felt + 0.05, "{name}: {felt} with noise that is felt, {cut} without");
+    }
 }
 
 #[test]

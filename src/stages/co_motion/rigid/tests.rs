@@ -1,13 +1,10 @@
 //! Test that parts are found from touch on a simulated body.
 
-use rand_distr::{Distribution, StandardNormal};
-
 use super::*;
 use crate::numerics::partition::adjusted_rand_index;
 use crate::numerics::rng::stream;
 use crate::stages::agent::{Agent, Skin};
 use crate::stages::distance::information_metric;
-use crate::stages::noise::above_noise;
 use crate::stages::quantise::{Quantise, Scheme, quantise};
 use crate::stages::sense::{Sense, sense};
 use crate::stages::simulate::fixtures::{INTERVAL, Scene};
@@ -44,27 +41,6 @@ fn sensors_without_distances_go_to_the_part_that_explains_them() {
     let pressures = some.iter().flat_map(|&sensor| series[sensor]).copied().collect();
     let found = rigid_parts(&tactile, &some, &distances(&Tactile { samples: tactile.samples, pressures }));
     assert!(adjusted_rand_index(&found.labels, &truth) > 0.99);
-}
-
-#[test]
-fn noise_costs_no_part_if_it_counts_as_no_touch() {
-    let (mut tactile, truth) = tactile();
-    let rng = &mut stream(4, 1, "noise", 0);
-    for series in tactile.pressures.chunks_mut(tactile.samples) {
-        let squares: f32 = series.iter().map(|pressure| pressure * pressure).sum();
-        let deviation = 0.1 * (squares / series.len() as f32).sqrt();
-        for pressure in series {
-            let error: f32 = StandardNormal.sample(rng);
-            *pressure = (*pressure + deviation * error).max(0.0);
-        }
-    }
-    let agreement = |tactile: &Tactile| {
-        let all: Vec<usize> = (0..truth.len()).collect();
-        adjusted_rand_index(&rigid_parts(tactile, &all, &distances(tactile)).labels, &truth)
-    };
-    // The twin: noise is felt.
-    assert!(agreement(&tactile) < 0.8);
-    assert!(agreement(&above_noise(tactile).0) > 0.9);
 }
 
 #[test]
