@@ -6,6 +6,7 @@ use std::path::Path;
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3 as Column};
 use serde::{Deserialize, Serialize};
+use toml::{Table, Value};
 
 use super::error::FileError;
 use super::whole::{read_text, write_text};
@@ -154,7 +155,27 @@ pub fn read_body(path: &Path) -> Result<NamedBody, FileError> {
         let line = error.span().map_or(0, |span| 1 + text[..span.start].matches('\n').count());
         FileError::new(path, format!("line {line}: {}", error.message()))
     })?;
-    file.body().map_err(|message| FileError::new(path, message))
+    check_lengths(&text).and_then(|()| file.body()).map_err(|message| FileError::new(path, message))
+}
+
+/// Refuses lists with more numbers than are read.
+fn check_lengths(text: &str) -> Result<(), Wrong> {
+    let file: Table = toml::from_str(text).expect("it was read before");
+    let parts = file.get("part").and_then(Value::as_array).into_iter().flatten();
+    for part in parts.filter_map(Value::as_table) {
+        for (key, value) in part {
+            let most = if key == "quaternion" { 4 } else { 3 };
+            let lists = match value.as_array() {
+                Some(list) if key == "axes" => list.iter().filter_map(Value::as_array).collect(),
+                list => Vec::from_iter(list),
+            };
+            if let Some(list) = lists.iter().find(|list| list.len() > most) {
+                let name = part.get("name").and_then(Value::as_str).unwrap_or_default();
+                return Err(format!("part `{name}`: {key} has {} numbers, but needs {most}", list.len()));
+            }
+        }
+    }
+    Ok(())
 }
 
 /// Writes a body, with `remark` in its first lines.
@@ -178,7 +199,7 @@ impl BodyFile {
     pub fn body(&self) -> Result<NamedBody, Wrong> {
         let count = self.parts.len();
         if !(1..=MAX_PARTS).contains(&count) {
-            return Err(format!("it has {count} tables [[part]], but must have 1 to {MAX_PARTS}"));
+            return Err(format!("it has {count} parts ([[part]]), but must have 1 to {MAX_PARTS}"));
         }
         let mut agent = Agent { parts: Vec::new(), joints: Vec::new(), sites: Vec::new() };
         for (at, entry) in self.parts.iter().enumerate() {

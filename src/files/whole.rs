@@ -21,7 +21,7 @@ pub fn write_whole(
     if target.exists() && !target.is_file() {
         return Err(FileError::new(path, "cannot be written: it is not a regular file; choose another name"));
     }
-    let aside = target.with_added_extension("partial");
+    let aside = target.with_added_extension("bodyschema.partial");
     let attempt = || -> io::Result<()> {
         if let Some(folder) = target.parent() {
             fs::create_dir_all(folder)?;

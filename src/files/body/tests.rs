@@ -92,6 +92,14 @@ fn every_mistake_is_one_line_that_names_the_part() {
             format!("{}{joined}", rod.replace("to = [0, 0, 1]", "to = [0, 0, inf]")),
             "part `arm`: to is [0.0, 0.0, inf]",
         ),
+        (
+            format!("{}{joined}", rod.replace("to = [0, 0, 1]", "to = [0, 0, 1, 1]")),
+            "part `arm`: to has 4 numbers, but needs 3",
+        ),
+        (
+            format!("{rod}parent = \"trunk\"\njoint = \"hinge\"\naxes = [[0, 0, 1, 2]]\n"),
+            "part `arm`: axes has 4 numbers",
+        ),
         (format!("{rod}density = 0\n{joined}"), "part `arm`: density is 0"),
         (rod.to_owned(), "part `arm`: it lacks parent"),
         (
@@ -126,7 +134,7 @@ fn every_mistake_is_one_line_that_names_the_part() {
         let message = with_arm(&lines).unwrap_err();
         assert!(message.contains(expected) && !message.contains('\n'), "{lines:?} gave {message:?}");
     }
-    assert!(read("").unwrap_err().contains("0 tables [[part]]"));
+    assert!(read("").unwrap_err().contains("0 parts ([[part]])"));
     assert!(read(TRUNK).unwrap_err().contains("no sensors"));
     assert!(read(&format!("{TRUNK}joint = \"ball\"\n")).unwrap_err().contains("a joint but no parent"));
     assert!(read(&format!("{TRUNK}{TRUNK}")).unwrap_err().contains("another part has this name"));

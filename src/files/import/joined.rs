@@ -206,23 +206,23 @@ impl Joint {
         Ok(match axes[..] {
             [] if balls == 1 => (joint(JointName::Ball, None), None),
             [&axis] if balls == 0 => (joint(JointName::Hinge, Some(vec![axis])), None),
+            [&first, ref others @ ..]
+                if balls == 0 && others.iter().all(|axis| first.cross(axis).norm() < OBLIQUE) =>
+            {
+                let note = format!("its {} hinges have the same axis and became one hinge", axes.len());
+                (joint(JointName::Hinge, Some(vec![first])), Some(note))
+            }
             [&first, &second] if balls == 0 => {
                 let cosine = first.dot(&second);
-                let across = second - first * cosine;
-                if across.norm() < OBLIQUE {
-                    let note = "its two hinges have the same axis and became one hinge".to_owned();
-                    (joint(JointName::Hinge, Some(vec![first])), Some(note))
-                } else {
-                    let note = || {
-                        format!(
-                            "its two hinges are at {:.1} degrees and became a universal joint, whose second axis was turned to \
-                             a right angle",
-                            cosine.acos().to_degrees()
-                        )
-                    };
-                    let axes = vec![first, across.normalize()];
-                    (joint(JointName::Universal, Some(axes)), (cosine.abs() > OBLIQUE).then(note))
-                }
+                let note = || {
+                    format!(
+                        "its two hinges are at {:.1} degrees and became a universal joint, whose second axis was turned to \
+                         a right angle",
+                        cosine.acos().to_degrees()
+                    )
+                };
+                let axes = vec![first, (second - first * cosine).normalize()];
+                (joint(JointName::Universal, Some(axes)), (cosine.abs() > OBLIQUE).then(note))
             }
             _ => {
                 let note = format!("its {} joints at one place became a ball joint", anchors.len());

@@ -15,6 +15,9 @@ use crate::stages::agent::Shape;
 /// Elements that stand for others, which bodies may be among.
 const UNREAD: [&str; 6] = ["include", "attach", "replicate", "composite", "flexcomp", "plugin"];
 
+/// Elements of bodies that say nothing of parts, joints or shapes.
+const BESIDE: [&str; 5] = ["site", "camera", "light", "inertial", "geom"];
+
 /// A frame, and what holds for all within it.
 #[derive(Clone, Copy)]
 struct Frame<'a> {
@@ -46,6 +49,14 @@ pub fn links<'a>(root: Node<'a, 'a>) -> Result<Vec<Link>, Wrong> {
             Element::new("include", node).wrong("is not read; put the content of that file in its place")
         );
     }
+    let tied = |node: &Node| {
+        ["connect", "weld"].contains(&node.tag_name().name()) && node.attribute("active") != Some("false")
+    };
+    let equalities = root.children().filter(|node| node.has_tag_name("equality"));
+    if let Some(node) = equalities.flat_map(|node| node.children()).find(tied) {
+        let label = format!("{} in equality", node.tag_name().name());
+        return Err(Element::new(label, node).wrong("ties bodies together beside the tree; leave it out"));
+    }
     let worlds = || root.children().filter(|node| node.has_tag_name("worldbody"));
     let named = worlds().flat_map(|world| world.descendants()).filter(|node| node.has_tag_name("body"));
     let mut bodies = Bodies {
@@ -63,9 +74,16 @@ pub fn links<'a>(root: Node<'a, 'a>) -> Result<Vec<Link>, Wrong> {
         frames.insert(world.id(), still);
         for node in world.descendants().filter(Node::is_element) {
             let around = node.parent_element().and_then(|parent| frames.get(&parent.id()).copied());
-            if let Some(around) = around
-                && let Some(frame) = bodies.read(node, around)?
-            {
+            let Some(around) = around else {
+                let tag = node.tag_name().name();
+                if ["body", "geom", "joint", "freejoint", "frame"].contains(&tag) {
+                    return Err(
+                        Element::new(tag, node).wrong("is within an element that holds none; take it out")
+                    );
+                }
+                continue;
+            };
+            if let Some(frame) = bodies.read(node, around)? {
                 frames.insert(node.id(), frame);
             }
         }
@@ -110,7 +128,8 @@ impl<'a> Bodies<'a> {
                 self.masses[body] = Some(Element::new(label, node).needed_number("mass")?);
                 Ok(None)
             }
-            _ => Ok(None),
+            _ if BESIDE.contains(&tag) => Ok(None),
+            _ => Err(Element::new(label, node).wrong("is not known here; mind its name and where it is")),
         }
     }
 
@@ -187,7 +206,10 @@ fn solid(geom: &Element, frame: &Isometry3<f64>, defaults: &Defaults) -> Result<
             );
         }
     };
-    let ends = if kind == "sphere" { None } else { geom.numbers::<6>("fromto")? };
+    let ends = geom.numbers::<6>("fromto")?;
+    if ends.is_some() && kind == "sphere" {
+        return Err(geom.wrong("has fromto, but is a sphere; give its type: capsule, cylinder or box"));
+    }
     let lengths = if ends.is_some() { 1 } else { lengths };
     let mut size = geom.overlaid("size")?;
     if size.len() < lengths {

@@ -69,6 +69,9 @@ fn hinges_at_one_place_become_one_joint() {
     let (part, notes) = turned(&[hinge(X), hinge([-1.0, 0.0, 0.0])]).unwrap();
     assert_eq!((part.joint, part.axes), (Some(JointName::Hinge), Some(vec![X])));
     assert!(notes[0].contains("have the same axis"), "{notes:?}");
+    let (part, notes) = turned(&[hinge(X), hinge(X), hinge(X)]).unwrap();
+    assert_eq!((part.joint, part.axes), (Some(JointName::Hinge), Some(vec![X])));
+    assert!(notes[0].contains("its 3 hinges have the same axis"), "{notes:?}");
     let (part, notes) = turned(&[hinge(X), hinge(Y), hinge(Z)]).unwrap();
     assert_eq!((part.joint, part.anchor, part.axes), (Some(JointName::Ball), Some([1.0, 2.0, 3.0]), None));
     assert!(notes[0].contains("its 3 joints at one place became a ball joint"), "{notes:?}");

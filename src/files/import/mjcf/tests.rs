@@ -231,3 +231,24 @@ fn every_mistake_is_named_with_its_line_and_body() {
         assert!(message.contains(expected), "{sections:?} gave {message:?}");
     }
 }
+
+#[test]
+fn what_a_tree_has_not_or_nobody_knows_is_refused() {
+    let pair = "<body name='a'><geom size='0.1'/><body name='b'><joint/><geom size='0.1'/></body></body>";
+    for tie in ["<weld body1='a' body2='b'/>", "<connect body1='a' body2='b' anchor='0 0 0'/>"] {
+        let tied = world(&format!("<equality>{tie}</equality>"), pair);
+        assert!(tied.unwrap_err().contains("ties bodies together"));
+        let loose = tie.replace("/>", " active='false'/>");
+        assert!(world(&format!("<equality>{loose}</equality>"), pair).is_ok());
+    }
+    assert!(world("<equality><joint joint1='x'/></equality>", pair).is_ok());
+    for (inside, expected) in [
+        ("<bodi/>", "bodi of body `a` is not known here"),
+        ("<geom size='0.1'><geom size='0.1'/></geom>", "geom is within an element that holds none"),
+        ("<geom size='0.1' fromto='0 0 0 0 0 1'/>", "has fromto, but is a sphere"),
+    ] {
+        let message = world("", &format!("<body name='a'>{inside}</body>")).unwrap_err();
+        assert!(message.contains(expected), "{message}");
+    }
+    assert!(world("", "<a/>").unwrap_err().contains("a is not known here"));
+}
