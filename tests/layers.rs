@@ -12,12 +12,13 @@ const ROOMS: [&str; 9] =
     ["numerics", "stages", "files", "settings", "pipeline", "analysis", "report", "experiments", "cli"];
 
 /// The stages in order: each imports only those before it, and `baselines` and `schema` never each other.
-const STAGES: [&str; 13] = [
+const STAGES: [&str; 14] = [
     "tree",
     "agent",
     "simulate",
     "sense",
     "usable",
+    "noise",
     "quantise",
     "distance",
     "co_motion",
