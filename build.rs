@@ -1,17 +1,25 @@
 //! Stamps provenance into the binary: the git revision, the compiler, and ODE's version.
 
+use std::path::Path;
 use std::process::Command;
 
 fn main() {
-    for path in ["src", "reproduce", "ode-sys", "Cargo.toml", "Cargo.lock", ".git/HEAD", ".git/index"] {
-        println!("cargo:rerun-if-changed={path}");
-    }
     let output = |program: &str, arguments: &[&str]| {
         let output = Command::new(program).args(arguments).output().ok()?;
         output.status.success().then(|| String::from_utf8_lossy(&output.stdout).trim().to_owned())
     };
-    let revision =
-        packaged_revision().or_else(|| output("git", &["describe", "--always", "--dirty", "--abbrev=40"]));
+    // A path that is watched but missing would make every build a new one, and so would git's index, which git itself writes
+    // again when it looks at files. The log of HEAD changes with each commit and checkout, and with nothing else.
+    let log = output("git", &["rev-parse", "--git-path", "logs/HEAD"]);
+    for path in ["src", "reproduce", "ode-sys", "Cargo.toml", "Cargo.lock"].into_iter().chain(log.as_deref())
+    {
+        if Path::new(path).exists() {
+            println!("cargo:rerun-if-changed={path}");
+        }
+    }
+    let revision = packaged_revision().or_else(|| {
+        output("git", &["--no-optional-locks", "describe", "--always", "--dirty", "--abbrev=40"])
+    });
     let rustc = output(&std::env::var("RUSTC").unwrap_or("rustc".into()), &["--version"]);
     let ode = std::env::var("DEP_ODE_VERSION").expect("ode-sys's build script reports ODE's version");
     println!("cargo:rustc-env=BODYSCHEMA_REVISION={}", revision.as_deref().unwrap_or("unknown"));
