@@ -183,24 +183,11 @@ impl<T: Copy> Matrix<T> {
                 FileError::new(path, format!("row {row}, column {column}: {value}; {message}"))
             })
         };
-        let (kind, width) = plain_type(path, &npy)?;
+        let decode = decoder(path, &npy)?;
         let transposed = (order == Order::C) != (wanted == Order::C);
         // Lines of the file: rows in C order, columns in Fortran order.
         let line = if order == Order::C { columns } else { rows };
-        let layout = Layout { line, transposed };
-        let values = match (kind, width) {
-            (TypeChar::Float, 4) => collect(npy, path, layout, |at, x: f32| checked(at, x.into())),
-            (TypeChar::Float, 8) => collect(npy, path, layout, |at, x: f64| checked(at, x)),
-            (TypeChar::Int, 1) => collect(npy, path, layout, |at, x: i8| checked(at, x.into())),
-            (TypeChar::Int, 2) => collect(npy, path, layout, |at, x: i16| checked(at, x.into())),
-            (TypeChar::Int, 4) => collect(npy, path, layout, |at, x: i32| checked(at, x.into())),
-            (TypeChar::Int, 8) => collect(npy, path, layout, |at, x: i64| checked(at, x as f64)),
-            (TypeChar::Uint, 1) => collect(npy, path, layout, |at, x: u8| checked(at, x.into())),
-            (TypeChar::Uint, 2) => collect(npy, path, layout, |at, x: u16| checked(at, x.into())),
-            (TypeChar::Uint, 4) => collect(npy, path, layout, |at, x: u32| checked(at, x.into())),
-            (TypeChar::Uint, 8) => collect(npy, path, layout, |at, x: u64| checked(at, x as f64)),
-            _ => Err(wrong_type(path, &npy)),
-        }?;
+        let values = collect(npy, decode, path, Layout { line, transposed }, checked)?;
         Ok(Self { rows, columns, values })
     }
 }
@@ -299,28 +286,70 @@ fn check_header(start: &[u8]) -> Result<(), &'static str> {
     Ok(())
 }
 
+/// Decodes values of one type, and how many bytes each has.
+struct Decode {
+    width: usize,
+    /// Adds what bytes hold.
+    add: Box<dyn Fn(&[u8], &mut Vec<f64>) -> io::Result<()>>,
+}
+
+/// How to decode the values of a file. All but integers beyond 2^53 are exact as f64.
+fn decoder(path: &Path, npy: &Npy) -> Result<Decode, FileError> {
+    fn of<S: Deserialize<TypeReader: 'static> + 'static>(
+        dtype: &DType,
+        number: fn(S) -> f64,
+    ) -> Option<Decode> {
+        let (decoder, width) = (S::reader(dtype).ok()?, size_of::<S>());
+        let add = move |bytes: &[u8], values: &mut Vec<f64>| {
+            values.reserve(bytes.len() / width);
+            bytes.chunks_exact(width).try_for_each(|value| {
+                values.push(number(decoder.read_one(value)?));
+                Ok(())
+            })
+        };
+        Some(Decode { width, add: Box::new(add) })
+    }
+    let dtype = npy.dtype();
+    match plain_type(path, npy)? {
+        (TypeChar::Float, 4) => of(&dtype, <f64 as From<f32>>::from),
+        (TypeChar::Float, 8) => of(&dtype, |value: f64| value),
+        (TypeChar::Int, 1) => of(&dtype, <f64 as From<i8>>::from),
+        (TypeChar::Int, 2) => of(&dtype, <f64 as From<i16>>::from),
+        (TypeChar::Int, 4) => of(&dtype, <f64 as From<i32>>::from),
+        (TypeChar::Int, 8) => of(&dtype, |value: i64| value as f64),
+        (TypeChar::Uint, 1) => of(&dtype, <f64 as From<u8>>::from),
+        (TypeChar::Uint, 2) => of(&dtype, <f64 as From<u16>>::from),
+        (TypeChar::Uint, 4) => of(&dtype, <f64 as From<u32>>::from),
+        (TypeChar::Uint, 8) => of(&dtype, |value: u64| value as f64),
+        _ => None,
+    }
+    .ok_or_else(|| wrong_type(path, npy))
+}
+
 /// Reads all values in the wanted order. A large file takes the memory of its values once: those to be transposed are read a few
 /// lines at a time.
-fn collect<S: Deserialize, T: Copy>(
+fn collect<T: Copy>(
     npy: Npy,
+    Decode { width, add }: Decode,
     path: &Path,
     Layout { line, transposed }: Layout,
-    convert: impl Fn(usize, S) -> Result<T, FileError>,
+    convert: impl Fn(usize, f64) -> Result<T, FileError>,
 ) -> Result<Vec<T>, FileError> {
     /// Lines that are read at a time: enough to fill what the memory hands over at once.
     const LINES: usize = 64;
     /// Values that are read at a time where the order stays.
     const VALUES: usize = 1 << 16;
-    let (length, width) = (npy.len() as usize, size_of::<S>());
-    let decoder = S::reader(&npy.dtype()).map_err(|error| FileError::new(path, error))?;
+    let length = npy.len() as usize;
     let damaged = |error: io::Error| FileError::new(path, format!("is truncated or damaged: {error}"));
-    let (mut file, mut bytes, mut done) = (npy.into_inner(), Vec::new(), 0);
+    let (mut file, mut bytes, mut decoded, mut done) = (npy.into_inner(), Vec::new(), Vec::new(), 0);
     // Adds the next values. Bytes are read many at a time, because to ask for each takes longer than to decode it.
     let mut read = |count: usize, values: &mut Vec<T>| -> Result<(), FileError> {
         bytes.resize(count * width, 0);
         file.read_exact(&mut bytes).map_err(damaged)?;
-        for value in bytes.chunks_exact(width) {
-            values.push(convert(done, decoder.read_one(value).map_err(damaged)?)?);
+        decoded.clear();
+        add(&bytes, &mut decoded).map_err(damaged)?;
+        for value in &decoded {
+            values.push(convert(done, *value)?);
             done += 1;
         }
         Ok(())

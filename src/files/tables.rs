@@ -39,13 +39,23 @@ pub fn write_rows_of<T: Serialize>(
     columns: &[&str],
     rows: impl IntoIterator<Item = T>,
 ) -> Result<(), FileError> {
+    let value = |row: T| serde_json::to_value(row).expect("a row is plain values");
+    write_values(path, columns, &mut rows.into_iter().map(value))
+}
+
+/// [`write_rows_of`], compiled once for all kinds of rows.
+fn write_values(
+    path: &Path,
+    columns: &[&str],
+    rows: &mut dyn Iterator<Item = Value>,
+) -> Result<(), FileError> {
     write_whole(path, |file| {
         let mut writer = csv::Writer::from_writer(file);
         if !columns.is_empty() {
             writer.write_record(columns)?;
         }
-        for (at, row) in rows.into_iter().enumerate() {
-            let Ok(Value::Object(row)) = serde_json::to_value(row) else { panic!("a row is a struct") };
+        for (at, row) in rows.enumerate() {
+            let Value::Object(row) = row else { panic!("a row is a struct") };
             if columns.is_empty() && at == 0 {
                 writer.write_record(row.keys())?;
             }

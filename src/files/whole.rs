@@ -16,13 +16,22 @@ pub fn write_whole(
     path: &Path,
     write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
 ) -> Result<(), FileError> {
+    let mut write = Some(write);
+    write_aside(path, &mut |file| write.take().map_or(Ok(()), |write| write(file)))
+}
+
+/// [`write_whole`], compiled once for all that it is called with.
+fn write_aside(
+    path: &Path,
+    write: &mut dyn FnMut(&mut BufWriter<File>) -> io::Result<()>,
+) -> Result<(), FileError> {
     // A link keeps pointing where it does; a device or pipe is not replaced.
     let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
     if target.exists() && !target.is_file() {
         return Err(FileError::new(path, "cannot be written: it is not a regular file; choose another name"));
     }
     let aside = target.with_added_extension("bodyschema.partial");
-    let attempt = || -> io::Result<()> {
+    let mut attempt = || -> io::Result<()> {
         if let Some(folder) = target.parent() {
             fs::create_dir_all(folder)?;
         }
