@@ -79,7 +79,7 @@ def check(part, rules, compare_only):
 
 
 def witnessed(made, committed, part):
-    """Whether the movements are those of the committed results, as on machines of the same kind."""
+    """Whether the movements and their maps are those of the committed results, as on machines of the same kind."""
     if "witness" not in part or not (made / part["witness"]).exists():
         return False
     new, packed = read(made / part["witness"]), committed / f"{part['witness']}.gz"
