@@ -85,3 +85,9 @@ tables = [AGENT, ANGLES, two, three, two, three, PARTS, CURVE.format("ward", 3),
           *[CURVE.format("dpgmm-lj", "")] * 4, CLAIMS + "\0" + MANIFEST]
 for number, table in enumerate(tables):
     put("plot", f"{number:02}", bytes([number]) + table.encode())
+
+ROOT = SEEDS.parent.parent
+for robot in sorted((ROOT / "tests/data/import").glob("*")):
+    put("body", robot.name, b"\0" + robot.read_bytes())
+for body in ("star", "human"):
+    put("body", body, b"\1" + (ROOT / f"bodies/{body}.toml").read_bytes())

@@ -23,7 +23,7 @@ cargo +nightly fuzz build >"$files/log" 2>&1 || {
     tail -n 40 "$files/log"
     exit 2
 }
-for target in npy tables settings plot verify; do
+for target in npy tables settings plot verify body; do
     echo "$target, $seconds s"
     mkdir -p "fuzz/corpus/$target"
     # A world that the physics engine gave up is never freed: a leak, and on purpose.
