@@ -286,11 +286,13 @@ fn check_header(start: &[u8]) -> Result<(), &'static str> {
     Ok(())
 }
 
+/// Adds the values that bytes hold.
+type AddValues = dyn Fn(&[u8], &mut Vec<f64>) -> io::Result<()>;
+
 /// Decodes values of one type, and how many bytes each has.
 struct Decode {
     width: usize,
-    /// Adds what bytes hold.
-    add: Box<dyn Fn(&[u8], &mut Vec<f64>) -> io::Result<()>>,
+    add: Box<AddValues>,
 }
 
 /// How to decode the values of a file. All but integers beyond 2^53 are exact as f64.
