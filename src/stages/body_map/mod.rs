@@ -9,6 +9,7 @@ mod classical;
 mod coordinates;
 mod guttman;
 mod maps;
+mod monotone;
 mod random_starts;
 mod rows;
 mod settings;

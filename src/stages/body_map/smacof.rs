@@ -9,13 +9,15 @@
 //! Nothing is drawn: the map that is improved decides the result. Each row is summed in a fixed order, so that the
 //! number of threads does not change a bit.
 
-use std::ops::Range;
+use std::array::from_fn;
 
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::coordinates::BodyMap;
 use super::guttman::Guttman;
+use super::monotone::Monotone;
+use crate::numerics::simd::vectorised;
 use crate::stages::distance::Distances;
 
 /// The iteration ends when a step lowers raw stress by less than this share: as many steps again as are allowed would
@@ -24,6 +26,9 @@ const TOLERANCE: f64 = 1e-6;
 /// Maximum number of steps. Maps of 840 sensors reach it: the first 300 steps in 14 dimensions lower raw stress to 7 %,
 /// and 300 more would lower that by another 1 %.
 const MAX_STEPS: usize = 300;
+
+/// Coordinates that are summed at once.
+const LANES: usize = 8;
 
 /// What the distances within a map are fitted to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -118,23 +123,33 @@ impl<'a> Majorisation<'a> {
     /// Points that coincide do not move each other, as Borg & Groenen (2005, chapter 8) have it.
     pub fn step(&mut self) {
         let (n, dims) = (self.map.points(), self.map.dims);
-        let (old, disparities) = (&self.map.coordinates, self.disparities());
+        let (old, disparities) = (Blocks::new(&self.map), self.disparities());
         let mut new = vec![0.0; n * dims];
-        new.par_chunks_exact_mut(dims).enumerate().for_each(|(i, moved)| {
-            let own = &old[i * dims..][..dims];
-            let pairs = disparities[i * n..][..n].iter().zip(&self.within[i * n..][..n]);
-            for ((&disparity, &within), other) in pairs.zip(old.chunks_exact(dims)) {
-                if within > 0.0 {
-                    let weight = disparity / within;
-                    for ((sum, x), y) in moved.iter_mut().zip(own).zip(other) {
-                        *sum += weight * (x - y);
-                    }
+        new.par_chunks_exact_mut(dims).enumerate().for_each_init(
+            || vec![0.0; n],
+            |weights, (i, moved)| {
+                let pairs = disparities[i * n..][..n].iter().zip(&self.within[i * n..][..n]);
+                vectorised(
+                    #[inline(always)]
+                    || {
+                        for (weight, (disparity, within)) in weights.iter_mut().zip(pairs.clone()) {
+                            *weight = if *within > 0.0 { disparity / within } else { 0.0 };
+                        }
+                    },
+                );
+                for (moved, points) in moved.chunks_mut(LANES).zip(old.0.chunks_exact(n)) {
+                    let mut sums = [0.0; LANES];
+                    vectorised(
+                        #[inline(always)]
+                        || pull(&mut sums, points[i], weights, points),
+                    );
+                    moved.iter_mut().zip(sums).for_each(|(moved, sum)| *moved = sum / n as f64);
                 }
-            }
-            moved.iter_mut().for_each(|sum| *sum /= n as f64);
-        });
+            },
+        );
         self.map.coordinates = new;
-        self.within = euclidean(&self.map);
+        // In place: pages given back and taken anew would take longer than the distances.
+        euclidean_into(&mut self.within, &self.map);
         if let Some(monotone) = &mut self.monotone {
             monotone.fit(&self.within);
         }
@@ -177,104 +192,69 @@ impl<'a> Majorisation<'a> {
     }
 }
 
-/// Disparities by monotone regression.
-///
-/// Pairs at equal distances may have any disparities (Kruskal's primary approach to ties), which is the monotone
-/// regression with such pairs in the order of their distances within the map. The sum of squares is that of the
-/// distances within the first map: so the scale is that map's, whatever the unit of the given distances, of which only
-/// the order matters.
-#[derive(Debug)]
-struct Monotone {
-    /// Where each pair i < j stands in an n × n matrix, by rising distance.
-    order: Vec<usize>,
-    /// Where pairs in `order` are at equal distances.
-    ties: Vec<Range<usize>>,
-    /// Σ d̂² over pairs.
-    squares: f64,
-    /// n × n, d̂.
-    disparities: Vec<f64>,
-    /// n.
-    points: usize,
-    /// Σ (fit − d)² over pairs, of the regression as it is before it is scaled.
-    residual: f64,
-}
+/// The coordinates of all points, [`LANES`] of each at a time, with 0 beyond the last one.
+struct Blocks(Vec<[f64; LANES]>);
 
-impl Monotone {
-    fn new(distances: &Distances, within: &[f64]) -> Self {
-        let (n, given) = (distances.sensors, &distances.values);
-        let mut order: Vec<usize> = (0..n).flat_map(|i| (i + 1..n).map(move |j| i * n + j)).collect();
-        order.par_sort_unstable_by(|&a, &b| given[a].total_cmp(&given[b]).then(a.cmp(&b)));
-        let mut ties = Vec::new();
-        let mut start = 0;
-        for block in order.chunk_by(|&a, &b| given[a] == given[b]) {
-            if block.len() > 1 {
-                ties.push(start..start + block.len());
-            }
-            start += block.len();
-        }
-        let squares = sum_over_pairs(within, within, n, |a, b| a * b);
-        let mut monotone =
-            Self { order, ties, squares, disparities: vec![0.0; n * n], points: n, residual: 0.0 };
-        monotone.fit(within);
-        monotone
-    }
-
-    /// Regresses the distances within a map on the order of the given ones.
-    fn fit(&mut self, within: &[f64]) {
-        for tie in &self.ties {
-            let by_distance = |a: &usize, b: &usize| within[*a].total_cmp(&within[*b]).then(a.cmp(b));
-            self.order[tie.clone()].sort_unstable_by(by_distance);
-        }
-        let values: Vec<f64> = self.order.iter().map(|&pair| within[pair]).collect();
-        let fitted = isotonic(&values);
-        self.residual = fitted.iter().zip(&values).map(|(fit, value)| (fit - value).powi(2)).sum();
-        let squares: f64 = fitted.iter().map(|fit| fit.powi(2)).sum();
-        let scale = if squares > 0.0 { (self.squares / squares).sqrt() } else { 0.0 };
-        let n = self.points;
-        for (&pair, fit) in self.order.iter().zip(fitted) {
-            self.disparities[pair] = scale * fit;
-            self.disparities[pair % n * n + pair / n] = scale * fit;
-        }
+impl Blocks {
+    fn new(map: &BodyMap) -> Self {
+        let block = |first: usize, point: &[f64]| {
+            let own = &point[first..point.len().min(first + LANES)];
+            from_fn(|lane| own.get(lane).copied().unwrap_or(0.0))
+        };
+        let firsts = (0..map.dims).step_by(LANES);
+        Self(
+            firsts
+                .flat_map(|first| {
+                    map.coordinates.chunks_exact(map.dims).map(move |point| block(first, point))
+                })
+                .collect(),
+        )
     }
 }
 
-/// The rising sequence that is nearest to this one by least squares: neighbours that fall are pooled.
-fn isotonic(values: &[f64]) -> Vec<f64> {
-    // Sum and number of the values that share a mean.
-    let mut blocks: Vec<(f64, usize)> = Vec::new();
-    let mean = |(sum, count): (f64, usize)| sum / count as f64;
-    for &value in values {
-        let mut block = (value, 1);
-        while let Some(&before) = blocks.last()
-            && mean(before) > mean(block)
-        {
-            blocks.pop();
-            block = (before.0 + block.0, before.1 + block.1);
+/// Adds Σ_j weight_j (x − x_j).
+#[inline(always)]
+fn pull(sums: &mut [f64; LANES], own: [f64; LANES], weights: &[f64], points: &[[f64; LANES]]) {
+    // A copy, which the compiler knows not to overlap with anything.
+    let mut kept = *sums;
+    for (weight, point) in weights.iter().zip(points) {
+        for lane in 0..LANES {
+            kept[lane] += weight * (own[lane] - point[lane]);
         }
-        blocks.push(block);
     }
-    blocks.into_iter().flat_map(|block| std::iter::repeat_n(mean(block), block.1)).collect()
+    *sums = kept;
 }
 
 /// n × n: Euclidean distances within a map; exactly symmetric.
 pub fn euclidean(map: &BodyMap) -> Vec<f64> {
+    let mut within = vec![0.0; map.points().pow(2)];
+    euclidean_into(&mut within, map);
+    within
+}
+
+/// Puts the distances within a map in place of these.
+fn euclidean_into(within: &mut [f64], map: &BodyMap) {
     let (n, dims) = (map.points(), map.dims);
     // By columns, so that the inner loop goes over points and becomes vector instructions.
     let columns: Vec<f64> =
         (0..dims).flat_map(|k| map.coordinates.iter().skip(k).step_by(dims).copied()).collect();
-    let mut within = vec![0.0_f64; n * n];
     within.par_chunks_exact_mut(n).enumerate().for_each(|(i, row)| {
-        for column in columns.chunks_exact(n) {
-            let own = column[i];
-            row.iter_mut().zip(column).for_each(|(sum, x)| *sum += (own - x) * (own - x));
-        }
-        row.iter_mut().for_each(|square| *square = square.sqrt());
+        vectorised(
+            #[inline(always)]
+            || {
+                row.fill(0.0);
+                for column in columns.chunks_exact(n) {
+                    let own = column[i];
+                    row.iter_mut().zip(column).for_each(|(sum, x)| *sum += (own - x) * (own - x));
+                }
+                row.iter_mut().for_each(|square| *square = square.sqrt());
+            },
+        );
     });
-    within
 }
 
 /// Sum over pairs i < j of a term of the entries of two symmetric n × n matrices, which is 0 on their diagonals.
-fn sum_over_pairs(first: &[f64], second: &[f64], n: usize, term: impl Fn(f64, f64) -> f64 + Sync) -> f64 {
+pub fn sum_over_pairs(first: &[f64], second: &[f64], n: usize, term: impl Fn(f64, f64) -> f64 + Sync) -> f64 {
     let rows = first.par_chunks_exact(n).zip(second.par_chunks_exact(n));
     let sums = rows.map(|(first, second)| first.iter().zip(second).map(|(a, b)| term(*a, *b)).sum::<f64>());
     sums.collect::<Vec<_>>().iter().sum::<f64>() / 2.0

@@ -193,11 +193,3 @@ fn tied_pairs_may_have_any_disparities() {
     let expected = ((115.0 - 6.0 * (23.0_f64 / 6.0).powi(2)) / 115.0).sqrt();
     assert!((state.stress() - expected).abs() < 1e-12);
 }
-
-#[test]
-fn falling_neighbours_are_pooled() {
-    assert_eq!(isotonic(&[1.0, 3.0, 2.0, 4.0]), [1.0, 2.5, 2.5, 4.0]);
-    assert_eq!(isotonic(&[3.0, 2.0, 1.0, 6.0, 5.0]), [2.0, 2.0, 2.0, 5.5, 5.5]);
-    assert_eq!(isotonic(&[1.0, 5.0, 4.0, 0.0]), [1.0, 3.0, 3.0, 3.0]);
-    assert!(isotonic(&[]).is_empty());
-}
