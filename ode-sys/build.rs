@@ -46,7 +46,7 @@ fn generate_bindings(ode: &pkg_config::Library) {
         "dMassSet(Cylinder|Capsule|Sphere|Box)",
         "dBodyCreate",
         "dBodyAddForce",
-        "dBodySet(Mass|Position|Rotation)",
+        "dBodySet(Mass|Position|Rotation|LinearVel|AngularVel)",
         "dBodyGet(Position|Rotation|LinearVel|AngularVel)",
         "dJointCreate(Universal|Hinge|Ball|Fixed|AMotor)",
         "dJointAttach",

@@ -369,6 +369,12 @@ unsafe extern "C" {
     pub fn dBodySetRotation(arg1: dBodyID, R: *const dReal);
 }
 unsafe extern "C" {
+    pub fn dBodySetLinearVel(arg1: dBodyID, x: dReal, y: dReal, z: dReal);
+}
+unsafe extern "C" {
+    pub fn dBodySetAngularVel(arg1: dBodyID, x: dReal, y: dReal, z: dReal);
+}
+unsafe extern "C" {
     pub fn dBodyGetPosition(arg1: dBodyID) -> *const dReal;
 }
 unsafe extern "C" {

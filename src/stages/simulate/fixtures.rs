@@ -1,6 +1,6 @@
 //! Build a small body and its movement for the tests of this stage.
 
-use super::settings::{AngleError, Controller, Motion, Physics, Targets};
+use super::settings::{AngleError, AngularMomentum, Controller, Motion, Physics, Targets};
 use crate::stages::agent::{Agent, Geometry, Morphology, Skin};
 
 /// Everything that a simulation needs.
@@ -35,7 +35,12 @@ impl Scene {
                 servo_torque: 100.0,
                 error: AngleError::Shortest,
             },
-            physics: Physics { step: 0.01, duration: 200.0, turn_limit: 1e6 },
+            physics: Physics {
+                step: 0.01,
+                duration: 200.0,
+                turn_limit: 1e6,
+                angular_momentum: AngularMomentum::Engine,
+            },
         }
     }
 

@@ -12,5 +12,5 @@ mod settings;
 mod world;
 
 pub use self::movement::{Resolution, Trajectory, simulate};
-pub use self::settings::{AngleError, Controller, Motion, Physics, Targets};
+pub use self::settings::{AngleError, AngularMomentum, Controller, Motion, Physics, Targets};
 pub use self::world::{Pose, Unstable, engine};

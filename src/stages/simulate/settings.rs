@@ -77,7 +77,18 @@ impl Motion {
     }
 }
 
-/// Time in the physics engine, s.
+/// The angular momentum of a body on which nothing acts from outside. It should stay 0, but the engine's steps add to it, so that
+/// the whole body slowly turns even while all joints are locked.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum AngularMomentum {
+    /// As the engine's steps leave it.
+    Engine,
+    /// 0: after each step, the rotation of the whole body is taken off that makes it so.
+    Conserved,
+}
+
+/// Time in the physics engine, s, and what its steps leave.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Physics {
@@ -87,6 +98,8 @@ pub struct Physics {
     pub duration: f64,
     /// Maximum number of turns of a part in one step; above it, the simulation counts as unstable.
     pub turn_limit: f64,
+    /// What becomes of the angular momentum that steps add.
+    pub angular_momentum: AngularMomentum,
 }
 
 impl Physics {

@@ -12,10 +12,12 @@ use std::sync::Once;
 use ode_sys as ode;
 
 use self::joints::EngineJoint;
-use super::settings::Physics;
+use self::momentum::{Inertia, Moving};
+use super::settings::{AngularMomentum, Physics};
 use crate::stages::agent::{Agent, Part, Shape, Vector3};
 
 mod joints;
+mod momentum;
 
 pub use self::joints::ball_error;
 
@@ -56,6 +58,9 @@ pub struct World {
     world: ode::dWorldID,
     threading: ode::dThreadingImplementationID,
     bodies: Vec<ode::dBodyID>,
+    /// Of each body.
+    inertias: Vec<Inertia>,
+    angular_momentum: AngularMomentum,
     joints: Vec<EngineJoint>,
     step: f64,
     steps: u64,
@@ -101,11 +106,11 @@ fn last_message() -> String {
     String::from_utf8_lossy(&buffer[..length as usize]).into_owned()
 }
 
-/// Makes the body of a part, at rest in its rest pose.
+/// Makes the body of a part, at rest in its rest pose; with what it takes to move it.
 ///
 /// # Safety
 /// The world must be live.
-unsafe fn make_body(world: ode::dWorldID, part: &Part) -> ode::dBodyID {
+unsafe fn make_body(world: ode::dWorldID, part: &Part) -> (ode::dBodyID, Inertia) {
     const ALONG_Z: i32 = 3;
     let mut mass = MaybeUninit::<ode::dMass>::uninit();
     let at = mass.as_mut_ptr();
@@ -131,7 +136,8 @@ unsafe fn make_body(world: ode::dWorldID, part: &Part) -> ode::dBodyID {
         ode::dBodySetMass(body, &mass);
         ode::dBodySetRotation(body, rotation.as_ptr());
         ode::dBodySetPosition(body, part.centre[0], part.centre[1], part.centre[2]);
-        body
+        let tensor = [0, 4, 8].map(|row| [mass.I[row], mass.I[row + 1], mass.I[row + 2]]);
+        (body, Inertia { mass: mass.mass, tensor })
     }
 }
 
@@ -152,12 +158,15 @@ impl World {
                 threading,
             );
 
-            let bodies: Vec<_> = agent.parts.iter().map(|part| make_body(world, part)).collect();
+            let (bodies, inertias): (Vec<_>, _) =
+                agent.parts.iter().map(|part| make_body(world, part)).unzip();
             let joints = agent.joints.iter().map(|joint| EngineJoint::new(world, &bodies, joint)).collect();
             let mut world = Self {
                 world,
                 threading,
                 bodies,
+                inertias,
+                angular_momentum: physics.angular_momentum,
                 joints,
                 step: physics.step,
                 steps: 0,
@@ -200,7 +209,27 @@ impl World {
                 }
             }
         }
+        if self.angular_momentum == AngularMomentum::Conserved {
+            self.take_rotation_off();
+        }
         Ok(())
+    }
+
+    /// Brings the angular momentum back to 0 by a rotation of the whole body, which moves no joint.
+    fn take_rotation_off(&mut self) {
+        let parts: Vec<Moving> = (0..self.bodies.len())
+            .map(|part| {
+                let (linear, angular) = self.velocity(part);
+                Moving { inertia: self.inertias[part], pose: self.pose(part), linear, angular }
+            })
+            .collect();
+        for (body, ([x, y, z], [a, b, c])) in self.bodies.iter().zip(momentum::without_rotation(&parts)) {
+            // SAFETY: the bodies are live, and velocities were found finite.
+            unsafe {
+                ode::dBodySetLinearVel(*body, x, y, z);
+                ode::dBodySetAngularVel(*body, a, b, c);
+            }
+        }
     }
 
     /// Linear (m/s) and angular (rad/s) velocity of a part, in the world's frame.

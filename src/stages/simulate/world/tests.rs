@@ -138,6 +138,24 @@ fn angular_momentum_drifts_less_with_a_shorter_step() {
 }
 
 #[test]
+fn a_locked_body_turns_by_what_the_engine_adds_and_by_nothing_else() {
+    let (agent, mut scene) = agent_and_scene();
+    (scene.motion.coordination, scene.motion.controller) = (0.5, Controller::Servo);
+    // The fastest rotation of a part when all joints have been locked after 100 s of movement, rad/s.
+    let mut rest = |angular_momentum| {
+        scene.physics.angular_momentum = angular_momentum;
+        let mut world = World::new(&agent, &scene.physics);
+        move_about(&mut world, &scene, 10_000, |_, _| ());
+        (0..world.joints.len()).for_each(|joint| world.lock(joint));
+        (0..100).for_each(|_| world.step().unwrap());
+        assert!(world.anchor_separation() < 0.01, "{angular_momentum:?}");
+        (0..agent.parts.len()).map(|part| norm(world.velocity(part).1)).fold(0.0, f64::max)
+    };
+    let (conserved, engine) = (rest(AngularMomentum::Conserved), rest(AngularMomentum::Engine));
+    assert!(conserved < 1e-9 && engine > 1e-3, "{conserved:e} {engine:e}");
+}
+
+#[test]
 fn locked_joints_stay_locked() {
     locked_joints_stay_locked_under(Controller::Torque);
 }

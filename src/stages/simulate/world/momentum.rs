@@ -1,0 +1,95 @@
+//! The angular momentum of a body about its centre of mass, and the rotation of the whole body that has it.
+//!
+//! Nothing acts on the body from outside, and it starts at rest, so its momentum is 0. A step of ODE keeps the linear one, but
+//! not the angular one: forces of joints act where anchors are, which come apart a little, and rotations are advanced in turn
+//! with velocities. While all joints are locked the body is rigid, and what was added makes it turn.
+
+use nalgebra::{Matrix3, Vector3 as Column};
+
+use super::Pose;
+use crate::stages::agent::Vector3;
+
+/// How hard a part is to move.
+#[derive(Debug, Clone, Copy)]
+pub struct Inertia {
+    /// kg.
+    pub mass: f64,
+    /// About the centre of mass in the part's frame, kg m², by rows.
+    pub tensor: [Vector3; 3],
+}
+
+/// A part that moves.
+#[derive(Debug, Clone, Copy)]
+pub struct Moving {
+    pub inertia: Inertia,
+    pub pose: Pose,
+    /// m/s, in the world's frame.
+    pub linear: Vector3,
+    /// rad/s, in the world's frame.
+    pub angular: Vector3,
+}
+
+/// Linear and angular velocities of all parts without the rotation of the whole body about its centre of mass that has its
+/// angular momentum, which is then 0. The rates of joints stay as they are.
+pub fn without_rotation(parts: &[Moving]) -> Vec<(Vector3, Vector3)> {
+    let mass: f64 = parts.iter().map(|part| part.inertia.mass).sum();
+    let centre =
+        parts.iter().map(|part| part.inertia.mass * Column::from(part.pose.position)).sum::<Column<f64>>()
+            / mass;
+    let mut momentum = Column::zeros();
+    let mut inertia = Matrix3::zeros();
+    for part in parts {
+        let turned = matrix(&part.pose.rotation);
+        let own = turned * matrix(&part.inertia.tensor) * turned.transpose();
+        let place = Column::from(part.pose.position) - centre;
+        let mass = part.inertia.mass;
+        momentum += own * Column::from(part.angular) + mass * place.cross(&Column::from(part.linear));
+        inertia +=
+            own + mass * (Matrix3::from_diagonal_element(place.norm_squared()) - place * place.transpose());
+    }
+    let rotation = inertia.cholesky().map_or(Column::zeros(), |inertia| inertia.solve(&momentum));
+    let rest = |part: &Moving| {
+        let place = Column::from(part.pose.position) - centre;
+        let linear = Column::from(part.linear) - rotation.cross(&place);
+        (linear.into(), (Column::from(part.angular) - rotation).into())
+    };
+    parts.iter().map(rest).collect()
+}
+
+fn matrix(rows: &[Vector3; 3]) -> Matrix3<f64> {
+    Matrix3::from_fn(|row, column| rows[row][column])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn part(position: Vector3, linear: Vector3, angular: Vector3) -> Moving {
+        let tensor = [[0.1, 0.0, 0.0], [0.0, 0.1, 0.0], [0.0, 0.0, 0.02]];
+        // A quarter of a turn about x.
+        let rotation = [[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]];
+        Moving { inertia: Inertia { mass: 2.0, tensor }, pose: Pose { position, rotation }, linear, angular }
+    }
+
+    fn off(found: (Vector3, Vector3), expected: (Vector3, Vector3)) -> f64 {
+        let difference = |a: Vector3, b: Vector3| (Column::from(a) - Column::from(b)).norm();
+        difference(found.0, expected.0) + difference(found.1, expected.1)
+    }
+
+    #[test]
+    fn a_body_that_turns_as_one_comes_to_rest_and_goes_on_along_its_way() {
+        // About (1, 0, 0), at 0.5 rad/s about z, and 3 m/s along x.
+        let parts = [-1.0, 3.0].map(|x| part([x, 0.0, 0.0], [3.0, 0.5 * (x - 1.0), 0.0], [0.0, 0.0, 0.5]));
+        for found in without_rotation(&parts) {
+            assert!(off(found, ([3.0, 0.0, 0.0], [0.0; 3])) < 1e-12, "{found:?}");
+        }
+    }
+
+    #[test]
+    fn parts_that_turn_against_each_other_are_left_alone() {
+        let parts = [-1.0, 1.0].map(|x| part([x, 0.0, 0.0], [0.0; 3], [0.0, 0.0, x]));
+        for (found, part) in without_rotation(&parts).into_iter().zip(&parts) {
+            assert!(off(found, (part.linear, part.angular)) < 1e-12, "{found:?}");
+        }
+    }
+}
