@@ -37,7 +37,7 @@ enum Range {
 
 use Range::{Flag, Numbers, Probabilities, Real, Whole, Word};
 
-const SETTINGS: [(&str, Range); 59] = [
+const SETTINGS: [(&str, Range); 60] = [
     ("agent.morphology", Word(&["chain", "star", "tee", "y"])),
     ("agent.part_length", Real(1e-3, 1e3)),
     ("agent.part_radius", Real(1e-3, 5.0)),
@@ -61,6 +61,7 @@ const SETTINGS: [(&str, Range); 59] = [
     ("physics.angular_momentum", Word(&["engine", "conserved"])),
     ("sense.interval", Real(0.01, 10_000.0)),
     ("sense.fluid_density", Real(1e-6, 1e6)),
+    ("sense.threshold", Real(0.0, 1e6)),
     ("quantise.scheme", Word(&["per-sensor", "pooled", "equal-width"])),
     ("quantise.levels", Whole(2, 256)),
     ("map.of", Word(&["distances", "rows"])),

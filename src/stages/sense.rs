@@ -10,7 +10,7 @@ use rayon::prelude::*;
 
 use serde::{Deserialize, Serialize};
 
-use crate::numerics::range::{Checked, moderate, positive};
+use crate::numerics::range::{Checked, gain, moderate, positive};
 use crate::numerics::simd::vectorised;
 use crate::stages::agent::{Agent, Site, Vector3};
 use crate::stages::simulate::{Pose, Trajectory};
@@ -23,6 +23,9 @@ pub struct Sense {
     pub interval: f64,
     /// ρ, kg/m³.
     pub fluid_density: f64,
+    /// The weakest pressure that is felt, Pa; what is below is no pressure. With 0, as in the paper, any movement is felt,
+    /// however slow: also rounding.
+    pub threshold: f64,
 }
 
 impl Sense {
@@ -32,7 +35,8 @@ impl Sense {
     /// The first setting that is outside its range.
     pub fn check(&self) -> Checked {
         positive("sense.interval", self.interval)?;
-        moderate("sense.fluid_density", self.fluid_density)
+        moderate("sense.fluid_density", self.fluid_density)?;
+        gain("sense.threshold", self.threshold)
     }
 }
 
@@ -77,7 +81,7 @@ pub fn sense(agent: &Agent, trajectory: &Trajectory, settings: &Sense) -> Tactil
         own.par_chunks_mut(GROUP * samples).zip(sites.par_chunks(GROUP)).for_each(|(group, sites)| {
             vectorised(
                 #[inline(always)]
-                || pressures_in_lanes(group, sites, &motion, samples, settings.fluid_density),
+                || pressures_in_lanes(group, sites, &motion, samples, settings),
             );
         });
     }
@@ -139,7 +143,7 @@ fn pressures_in_lanes(
     sites: &[Site],
     motion: &[Motion],
     samples: usize,
-    fluid_density: f64,
+    settings: &Sense,
 ) {
     for (at, block) in motion.iter().enumerate() {
         let first = at * BLOCK;
@@ -154,7 +158,8 @@ fn pressures_in_lanes(
             let mut felt = [0.0; BLOCK];
             for lane in 0..BLOCK {
                 let outward = if outward[lane] > 0.0 { outward[lane] } else { 0.0 };
-                felt[lane] = (fluid_density * outward * outward) as f32;
+                let pressure = settings.fluid_density * outward * outward;
+                felt[lane] = if pressure >= settings.threshold { pressure as f32 } else { 0.0 };
             }
             series[first..first + lanes].copy_from_slice(&felt[..lanes]);
         }
@@ -169,7 +174,7 @@ mod tests {
     use crate::stages::simulate::fixtures::{INTERVAL, Scene};
     use crate::stages::simulate::simulate;
 
-    const WATER: Sense = Sense { interval: INTERVAL, fluid_density: 1010.0 };
+    const WATER: Sense = Sense { interval: INTERVAL, fluid_density: 1010.0, threshold: 0.0 };
 
     /// Two samples of an agent whose parts all move by `pose`, and the pressures they feel.
     fn felt(now: Pose) -> (Agent, Tactile) {
@@ -232,17 +237,24 @@ mod tests {
         let pose = |x: f64| Pose { position: [x, 0.0, 0.0], rotation: identity };
         let site = Site { part: 0, position: [0.0; 3], normal: [1.0, 0.0, 0.0] };
         let agent = Agent { parts: Vec::new(), joints: Vec::new(), sites: vec![site] };
-        let pressure = |way: f64, interval: f64, fluid_density: f64| {
+        let pressure_from = |threshold: f64, way: f64, interval: f64, fluid_density: f64| {
             let poses = vec![pose(0.0), pose(way)];
             let trajectory = Trajectory { parts: 1, poses, ..Trajectory::default() };
-            f64::from(sense(&agent, &trajectory, &Sense { interval, fluid_density }).pressures[0])
+            let settings = Sense { interval, fluid_density, threshold };
+            f64::from(sense(&agent, &trajectory, &settings).pressures[0])
         };
+        let pressure =
+            |way: f64, interval: f64, fluid_density: f64| pressure_from(0.0, way, interval, fluid_density);
         let speed = 0.2 / 0.1;
         let close = |found: f64, expected: f64| assert!((found - expected).abs() < 1e-6 * expected);
         close(pressure(0.2, 0.1, 1010.0), 2.0 * (0.5 * 1010.0 * speed * speed));
         close(pressure(0.2, 0.2, 1010.0), pressure(0.2, 0.1, 1010.0) / 4.0);
         close(pressure(0.2, 0.1, 505.0), pressure(0.2, 0.1, 1010.0) / 2.0);
         assert_eq!(pressure(-0.2, 0.1, 1010.0), 0.0, "backwards is exactly nothing");
+        assert!(pressure(1e-12, 0.1, 1010.0) > 0.0, "however slow");
+        let weak = pressure(0.1, 0.1, 1010.0);
+        assert_eq!(pressure_from(0.99 * weak, 0.1, 0.1, 1010.0), weak);
+        assert_eq!(pressure_from(1.01 * weak, 0.1, 0.1, 1010.0), 0.0, "below the threshold");
     }
 
     /// Equation 27 as it is written, for one sensor between two samples, Pa.
@@ -276,9 +288,9 @@ mod tests {
         assert!(felt > 10_000, "it moved: {felt}");
 
         let motion = motion(&trajectory, 0, INTERVAL);
-        let (own, density) = (agent.sites.len() / 5, WATER.fluid_density);
+        let own = agent.sites.len() / 5;
         let mut portable = vec![0.0; own * tactile.samples];
-        pressures_in_lanes(&mut portable, &agent.sites[..own], &motion, tactile.samples, density);
+        pressures_in_lanes(&mut portable, &agent.sites[..own], &motion, tactile.samples, &WATER);
         assert_eq!(portable, tactile.pressures[..own * tactile.samples]);
     }
 }

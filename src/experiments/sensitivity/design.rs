@@ -169,6 +169,7 @@ mod tests {
             "experiment.seed",
             "physics.turn_limit",
             "physics.angular_momentum",
+            "sense.threshold",
         ];
         let mut section = "";
         for line in PAPER.lines() {

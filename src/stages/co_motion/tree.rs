@@ -136,7 +136,8 @@ mod tests {
         let agent = Agent::new(&scene.geometry, &Skin { around: 8, along: 3, caps: 0 });
         let rng = &mut stream(3, 1, "motion", 0);
         let trajectory = simulate(&agent, &scene.motion, &scene.physics, INTERVAL, rng, &|| ()).unwrap();
-        let tactile = sense(&agent, &trajectory, &Sense { interval: INTERVAL, fluid_density: 1010.0 });
+        let tactile =
+            sense(&agent, &trajectory, &Sense { interval: INTERVAL, fluid_density: 1010.0, threshold: 0.0 });
         (agent, tactile)
     }
 

@@ -16,7 +16,10 @@ fn tactile() -> (Tactile, Vec<usize>) {
     let agent = Agent::new(&scene.geometry, &Skin { around: 8, along: 4, caps: 0 });
     let rng = &mut stream(3, 1, "motion", 0);
     let trajectory = simulate(&agent, &scene.motion, &scene.physics, INTERVAL, rng, &|| ()).unwrap();
-    (sense(&agent, &trajectory, &Sense { interval: INTERVAL, fluid_density: 1010.0 }), agent.labels())
+    (
+        sense(&agent, &trajectory, &Sense { interval: INTERVAL, fluid_density: 1010.0, threshold: 0.0 }),
+        agent.labels(),
+    )
 }
 
 fn distances(tactile: &Tactile) -> Distances {
