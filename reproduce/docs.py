@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 """Put the results of finished runs into the repository: reproduce/docs.py [RESULTS]
 
-RESULTS is the folder that holds exp1, exp2, search, sensitivity, ablation, step, multiverse, multiverse-held-out, mixing and
+RESULTS is the folder that holds exp1, exp2, search, sensitivity, ablation, step, momentum, multiverse, multiverse-held-out, mixing and
 bodies (default: results/). It updates
 
 - README.md: the table between <!-- claims --> and <!-- /claims -->, from claims.csv of both experiments;
 - docs/results.md: the tables of both experiments, from their claims.md;
 - docs/shown/: claims, tables and pictures of both experiments, and those of the studies;
-- docs/sensitivity.md, ablation.md, step.md, multiverse.md, mixing.md and bodies.md: the pages of the studies;
+- docs/sensitivity.md, ablation.md, step.md, momentum.md, multiverse.md, mixing.md and bodies.md: the pages of the studies;
 - DEVIATIONS.md: the table of open settings, from paper.toml, sensitivity.toml and the search that is
   shown. It needs no run;
 - docs/claims.md: the paper's sentences, claims and verdicts, from claims.toml and docs/shown. It needs no run;
@@ -44,7 +44,7 @@ UNITS = ["kg/m^3", "N m s/rad", "N m/rad", "m", "s"]
 
 def main():
     results = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "results"
-    studies = [search, sensitivity, ablation, half_step, multiverse, held_out, mixing, bodies]
+    studies = [search, sensitivity, ablation, shorter_step, momentum, multiverse, held_out, mixing, bodies]
     for step in [claims, experiment_1, experiment_2, *studies]:
         try:
             step(results)
@@ -183,8 +183,12 @@ def ablation(results):
     study(results / "ablation", "comparison.md", ["comparison.csv"])
 
 
-def half_step(results):
+def shorter_step(results):
     study(results / "step", "comparison.md", ["comparison.csv"])
+
+
+def momentum(results):
+    study(results / "momentum", "comparison.md", ["comparison.csv"])
 
 
 def multiverse(results):
