@@ -5,7 +5,6 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
-use super::smacof::sum_over_pairs;
 use crate::stages::distance::Distances;
 
 /// Disparities by monotone regression.
@@ -35,8 +34,9 @@ pub struct Monotone {
 }
 
 impl Monotone {
-    /// In: the given distances, which must be symmetric, and those within the first map, n × n.
-    pub fn new(distances: &Distances, within: &[f64]) -> Self {
+    /// In: the given distances, which must be symmetric; those within the first map, n × n, and the sum of their squares over
+    /// pairs.
+    pub fn new(distances: &Distances, within: &[f64], squares: f64) -> Self {
         let (n, given) = (distances.sensors, &distances.values);
         let mut order: Vec<usize> = (0..n).flat_map(|i| (i + 1..n).map(move |j| i * n + j)).collect();
         order.par_sort_unstable_by(|&a, &b| given[a].total_cmp(&given[b]).then(a.cmp(&b)));
@@ -50,7 +50,6 @@ impl Monotone {
             }
             start += block.len();
         }
-        let squares = sum_over_pairs(within, within, n, |a, b| a * b);
         let [values, fitted] = [Vec::new(), Vec::new()];
         let (pools, disparities) = (Vec::new(), vec![0.0; n * n]);
         let mut monotone =

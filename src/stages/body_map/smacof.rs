@@ -114,7 +114,8 @@ impl<'a> Majorisation<'a> {
     /// Prepares the first step from `map`. The distances must be finite and symmetric, and of as many points as the map.
     pub fn new(distances: &'a Distances, map: BodyMap, fit: Fit) -> Self {
         let within = euclidean(&map);
-        let monotone = (fit == Fit::Nonmetric).then(|| Monotone::new(distances, &within));
+        let squares = || sum_over_pairs(&within, &within, map.points(), |a, b| a * b);
+        let monotone = (fit == Fit::Nonmetric).then(|| Monotone::new(distances, &within, squares()));
         Self { distances, map, within, monotone }
     }
 
@@ -254,7 +255,7 @@ fn euclidean_into(within: &mut [f64], map: &BodyMap) {
 }
 
 /// Sum over pairs i < j of a term of the entries of two symmetric n × n matrices, which is 0 on their diagonals.
-pub fn sum_over_pairs(first: &[f64], second: &[f64], n: usize, term: impl Fn(f64, f64) -> f64 + Sync) -> f64 {
+fn sum_over_pairs(first: &[f64], second: &[f64], n: usize, term: impl Fn(f64, f64) -> f64 + Sync) -> f64 {
     let rows = first.par_chunks_exact(n).zip(second.par_chunks_exact(n));
     let sums = rows.map(|(first, second)| first.iter().zip(second).map(|(a, b)| term(*a, *b)).sum::<f64>());
     sums.collect::<Vec<_>>().iter().sum::<f64>() / 2.0
