@@ -6,6 +6,7 @@ use std::io::{self, BufRead, BufReader, Read};
 use std::path::Path;
 
 use npyz::{DType, Deserialize, NpyFile, Order, TypeChar, TypeRead, WriterBuilder};
+use rayon::prelude::*;
 
 use super::error::FileError;
 use super::whole::write_whole;
@@ -164,12 +165,12 @@ pub(super) struct Matrix<T> {
     pub(super) values: Vec<T>,
 }
 
-impl<T: Copy> Matrix<T> {
+impl<T: Copy + Default + Send + Sync> Matrix<T> {
     /// Reads a matrix of float32, float64 or any integer type into the order `wanted`, each value checked by `convert`.
     pub(super) fn read(
         path: &Path,
         wanted: Order,
-        convert: impl Fn(f64) -> Result<T, &'static str>,
+        convert: impl Fn(f64) -> Result<T, &'static str> + Sync,
     ) -> Result<Self, FileError> {
         let (npy, bytes) = open(path)?;
         let (rows, columns) = shape(path, &npy, bytes)?;
@@ -287,7 +288,7 @@ fn check_header(start: &[u8]) -> Result<(), &'static str> {
 }
 
 /// Adds the values that bytes hold.
-type AddValues = dyn Fn(&[u8], &mut Vec<f64>) -> io::Result<()>;
+type AddValues = dyn Fn(&[u8], &mut Vec<f64>) -> io::Result<()> + Send + Sync;
 
 /// Decodes values of one type, and how many bytes each has.
 struct Decode {
@@ -297,7 +298,7 @@ struct Decode {
 
 /// How to decode the values of a file. All but integers beyond 2^53 are exact as f64.
 fn decoder(path: &Path, npy: &Npy) -> Result<Decode, FileError> {
-    fn of<S: Deserialize<TypeReader: 'static> + 'static>(
+    fn of<S: Deserialize<TypeReader: Send + Sync + 'static> + 'static>(
         dtype: &DType,
         number: fn(S) -> f64,
     ) -> Option<Decode> {
@@ -328,54 +329,57 @@ fn decoder(path: &Path, npy: &Npy) -> Result<Decode, FileError> {
     .ok_or_else(|| wrong_type(path, npy))
 }
 
-/// Reads all values in the wanted order. A large file takes the memory of its values once: those to be transposed are read a few
-/// lines at a time.
-fn collect<T: Copy>(
+/// Reads all values in the wanted order. A large file takes the memory of its values once: bytes are read a few lines at a time,
+/// which all threads decode and put in place.
+fn collect<T: Copy + Default + Send + Sync>(
     npy: Npy,
     Decode { width, add }: Decode,
     path: &Path,
     Layout { line, transposed }: Layout,
-    convert: impl Fn(usize, f64) -> Result<T, FileError>,
+    convert: impl Fn(usize, f64) -> Result<T, FileError> + Sync,
 ) -> Result<Vec<T>, FileError> {
-    /// Lines that are read at a time: enough to fill what the memory hands over at once.
-    const LINES: usize = 64;
-    /// Values that are read at a time where the order stays.
-    const VALUES: usize = 1 << 16;
+    /// Values that are read at a time, about: few enough to stay near the processor.
+    const VALUES: usize = 1 << 17;
+    /// Values that a thread decodes at a time.
+    const SHARE: usize = 1 << 13;
     let length = npy.len() as usize;
     let damaged = |error: io::Error| FileError::new(path, format!("is truncated or damaged: {error}"));
-    let (mut file, mut bytes, mut decoded, mut done) = (npy.into_inner(), Vec::new(), Vec::new(), 0);
-    // Adds the next values. Bytes are read many at a time, because to ask for each takes longer than to decode it.
-    let mut read = |count: usize, values: &mut Vec<T>| -> Result<(), FileError> {
-        bytes.resize(count * width, 0);
-        file.read_exact(&mut bytes).map_err(damaged)?;
-        decoded.clear();
-        add(&bytes, &mut decoded).map_err(damaged)?;
-        for value in &decoded {
-            values.push(convert(done, *value)?);
-            done += 1;
-        }
-        Ok(())
+    // The values from the one with this number on. Of several mistakes, the first is named.
+    let decode = |number: usize, bytes: &[u8], values: &mut [T]| -> Result<(), FileError> {
+        let shares = values.par_chunks_mut(SHARE).zip(bytes.par_chunks(SHARE * width)).enumerate();
+        let decoded = shares.map(|(share, (values, bytes))| {
+            let mut decoded = Vec::with_capacity(values.len());
+            add(bytes, &mut decoded).map_err(damaged)?;
+            for (at, (to, value)) in values.iter_mut().zip(decoded).enumerate() {
+                *to = convert(number + share * SHARE + at, value)?;
+            }
+            Ok(())
+        });
+        decoded.collect::<Vec<_>>().into_iter().collect()
     };
+    let (mut file, mut bytes) = (npy.into_inner(), Vec::new());
+    let mut read = |number: usize, values: &mut [T]| {
+        bytes.resize(values.len() * width, 0);
+        file.read_exact(&mut bytes).map_err(damaged)?;
+        decode(number, &bytes, values)
+    };
+    // Zeros that the system has at hand, and writes nowhere before they are needed.
+    let mut values = vec![T::default(); length];
     if !transposed {
-        let mut values = Vec::with_capacity(length);
-        while values.len() < length {
-            read(VALUES.min(length - values.len()), &mut values)?;
+        for (at, values) in values.chunks_mut(VALUES).enumerate() {
+            read(at * VALUES, values)?;
         }
         return Ok(values);
     }
-    let lines = length / line;
-    let (mut values, mut band) = (Vec::new(), Vec::with_capacity(LINES.min(lines) * line));
-    for first in (0..lines).step_by(LINES) {
-        let count = LINES.min(lines - first);
-        band.clear();
-        read(count * line, &mut band)?;
-        if values.is_empty() {
-            values = vec![band[0]; length];
-        }
-        for at in 0..line {
-            let to = &mut values[at * lines + first..][..count];
-            to.iter_mut().zip(band[at..].iter().step_by(line)).for_each(|(to, value)| *to = *value);
-        }
+    let (lines, most) = (length / line, (VALUES / line).max(1));
+    let mut band = vec![T::default(); most.min(lines) * line];
+    for first in (0..lines).step_by(most) {
+        let band = &mut band[..most.min(lines - first) * line];
+        read(first * line, band)?;
+        values.par_chunks_exact_mut(lines).enumerate().for_each(|(at, values)| {
+            let column = band[at..].iter().step_by(line);
+            values[first..].iter_mut().zip(column).for_each(|(to, value)| *to = *value);
+        });
     }
     Ok(values)
 }
