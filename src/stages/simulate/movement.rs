@@ -39,7 +39,8 @@ impl Resolution {
     pub const TURN: f64 = 0.1;
 
     /// Whether the step resolves the movement: anchors stay within 1 cm, and no part turns by more than a tenth of a
-    /// turn in a step. A movement that is not resolved is no evidence on what a real body would feel.
+    /// turn in a step. A movement that is not resolved is no evidence on what a real body would feel. One that is may still
+    /// rest on what steps add to its [angular momentum](super::AngularMomentum).
     pub fn is_resolved(&self) -> bool {
         self.anchor_separation <= Self::SEPARATION && self.turn <= Self::TURN
     }
