@@ -340,6 +340,8 @@ fn collect<T: Copy + Default + Send + Sync>(
 ) -> Result<Vec<T>, FileError> {
     /// Values that are read at a time, about: few enough to stay near the processor.
     const VALUES: usize = 1 << 17;
+    /// Fewest lines that are read at a time where they are to be columns: enough to fill what the memory hands over at once.
+    const LINES: usize = 64;
     /// Values that a thread decodes at a time.
     const SHARE: usize = 1 << 13;
     let length = npy.len() as usize;
@@ -371,7 +373,7 @@ fn collect<T: Copy + Default + Send + Sync>(
         }
         return Ok(values);
     }
-    let (lines, most) = (length / line, (VALUES / line).max(1));
+    let (lines, most) = (length / line, (VALUES / line).max(LINES));
     let mut band = vec![T::default(); most.min(lines) * line];
     for first in (0..lines).step_by(most) {
         let band = &mut band[..most.min(lines - first) * line];

@@ -224,7 +224,7 @@ impl World {
             })
             .collect();
         for (body, ([x, y, z], [a, b, c])) in self.bodies.iter().zip(momentum::without_rotation(&parts)) {
-            // SAFETY: the bodies are live, and velocities were found finite.
+            // SAFETY: the bodies are live, and velocities, of which these are sums with finite factors, were found finite.
             unsafe {
                 ode::dBodySetLinearVel(*body, x, y, z);
                 ode::dBodySetAngularVel(*body, a, b, c);

@@ -47,7 +47,8 @@ pub fn without_rotation(parts: &[Moving]) -> Vec<(Vector3, Vector3)> {
         inertia +=
             own + mass * (Matrix3::from_diagonal_element(place.norm_squared()) - place * place.transpose());
     }
-    let rotation = inertia.cholesky().map_or(Column::zeros(), |inertia| inertia.solve(&momentum));
+    let inertia = inertia.cholesky().expect("parts have a volume");
+    let rotation = inertia.solve(&momentum);
     let rest = |part: &Moving| {
         let place = Column::from(part.pose.position) - centre;
         let linear = Column::from(part.linear) - rotation.cross(&place);
@@ -82,6 +83,22 @@ mod tests {
         let parts = [-1.0, 3.0].map(|x| part([x, 0.0, 0.0], [3.0, 0.5 * (x - 1.0), 0.0], [0.0, 0.0, 0.5]));
         for found in without_rotation(&parts) {
             assert!(off(found, ([3.0, 0.0, 0.0], [0.0; 3])) < 1e-12, "{found:?}");
+        }
+    }
+
+    /// Of a rigid motion any inertia takes off all; here only the right one does.
+    #[test]
+    fn one_part_that_turns_alone_has_the_momentum_of_its_inertia() {
+        let spin = [0.0, 0.3, 0.4];
+        let parts = [part([-1.0, 0.0, 0.0], [0.0; 3], spin), part([1.0, 0.0, 0.0], [0.0; 3], [0.0; 3])];
+        // The part's long axis, of 0.02 kg m², lies along −y: so it has 0.02 of y and 0.1 of z. Both parts and their places,
+        // 2 kg at 1 m each, have 0.2 about x, 0.04 + 4 about y and 0.2 + 4 about z.
+        let rotation = [0.0, 0.02 * 0.3 / 4.04, 0.1 * 0.4 / 4.2];
+        for (found, (part, way)) in without_rotation(&parts).into_iter().zip(parts.iter().zip([-1.0, 1.0])) {
+            let angular = [0, 1, 2].map(|i| part.angular[i] - rotation[i]);
+            // Less rotation × place.
+            let linear = [0.0, -rotation[2] * way, rotation[1] * way];
+            assert!(off(found, (linear, angular)) < 1e-12, "{found:?}");
         }
     }
 

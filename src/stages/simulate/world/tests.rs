@@ -138,6 +138,27 @@ fn angular_momentum_drifts_less_with_a_shorter_step() {
 }
 
 #[test]
+fn angular_momentum_stays_0_where_it_is_conserved() {
+    let (agent, mut scene) = agent_and_scene();
+    (scene.motion.coordination, scene.motion.controller) = (0.3, Controller::Servo);
+    // Largest angular momentum, kg m²/s, over 50 s of movement, by the closed form of a cylinder's inertia; and the largest
+    // linear one.
+    let mut largest = |kept| {
+        scene.physics.angular_momentum = kept;
+        let mut world = World::new(&agent, &scene.physics);
+        let (mut turning, mut linear) = (0.0_f64, 0.0_f64);
+        move_about(&mut world, &scene, 5_000, |world, _| {
+            turning = turning.max(norm(angular_momentum(world, &scene)));
+            linear = linear.max(momentum(world, &scene).0);
+        });
+        (turning, linear)
+    };
+    let (conserved, engine) = (largest(AngularMomentum::Conserved), largest(AngularMomentum::Engine));
+    assert!(conserved.0 < 1e-9 && engine.0 > 1e-4, "{conserved:?} {engine:?}");
+    assert!(conserved.1 < 1e-9, "{conserved:?}");
+}
+
+#[test]
 fn a_locked_body_turns_by_what_the_engine_adds_and_by_nothing_else() {
     let (agent, mut scene) = agent_and_scene();
     (scene.motion.coordination, scene.motion.controller) = (0.5, Controller::Servo);
