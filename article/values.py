@@ -332,9 +332,14 @@ def ablation():
     value("ablation-bodies", max(int(row["simulations"]) for row in table(source)), source)
 
 
+def compared(source):
+    """Rows of a comparison, by configuration and claim."""
+    return {(row["configuration"], row["claim"]): row for row in table(source)}
+
+
 def step():
     source = "docs/shown/step/comparison.csv"
-    rows = {(row["configuration"], row["claim"]): row for row in table(source)}
+    rows = compared(source)
     half = rows["half the step", "tree-accuracy"]
     value("step-bodies", rows["default", "tree-accuracy"]["simulations"], source)
     value("step-tree", points(half["change"]), source)
@@ -348,7 +353,7 @@ def step():
 
 def momentum():
     source = "docs/shown/momentum/comparison.csv"
-    rows = {(row["configuration"], row["claim"]): row for row in table(source)}
+    rows = compared(source)
     engine, conserved, silent = "as the engine leaves it", "conserved", "conserved, and rest is no touch"
     for name, configuration in {"engine": engine, "conserved": conserved}.items():
         tree = rows[configuration, "tree-accuracy"]

@@ -16,7 +16,6 @@ import sys
 
 import numpy
 
-INTERVAL = 0.1  # s, between two samples; sense.interval of reproduce/paper.toml
 STILL = 1e-3  # rad/s
 
 
@@ -29,14 +28,15 @@ def main(folders):
 
 
 def at_rest(folder):
-    angles = numpy.loadtxt(folder / "joint-angles.csv", delimiter=",", skiprows=1)[:, 1:]
-    change = numpy.diff(angles, axis=0)
-    rates = numpy.abs((change + numpy.pi) % (2 * numpy.pi) - numpy.pi) / INTERVAL
+    table = numpy.loadtxt(folder / "joint-angles.csv", delimiter=",", skiprows=1)
+    interval = table[1, 0] - table[0, 0]
+    change = numpy.diff(table[:, 1:], axis=0)
+    rates = numpy.abs((change + numpy.pi) % (2 * numpy.pi) - numpy.pi) / interval
     locked = rates.max(axis=1) < STILL
     # Of a quaternion and its negative, which are one rotation, the nearer one counts.
     turned = numpy.load(folder / "poses.npy").astype(float)[:, 3:7]
     steps = [numpy.linalg.norm(turned[1:] - sign * turned[:-1], axis=1) for sign in (1, -1)]
-    turn = 2 * numpy.minimum(*steps) / INTERVAL
+    turn = 2 * numpy.minimum(*steps) / interval
     touch = numpy.sqrt(numpy.load(folder / "tactile.npy")).mean(axis=1)
     median = lambda series, where: numpy.median(series[where]) if where.any() else None
     return [locked.mean(), *(median(series, where) for series in (turn, touch) for where in (locked, ~locked))]
