@@ -45,7 +45,7 @@ fn generate_bindings(ode: &pkg_config::Library) {
         "dThreadingFreeImplementation",
         "dMassSet(Cylinder|Capsule|Sphere|Box)",
         "dBodyCreate",
-        "dBodyAddForce",
+        "dBodyAdd(Force|Torque)",
         "dBodySet(Mass|Position|Rotation|LinearVel|AngularVel)",
         "dBodyGet(Position|Rotation|LinearVel|AngularVel)",
         "dJointCreate(Universal|Hinge|Ball|Fixed|AMotor)",

@@ -37,7 +37,7 @@ enum Range {
 
 use Range::{Flag, Numbers, Probabilities, Real, Whole, Word};
 
-const SETTINGS: [(&str, Range); 60] = [
+const SETTINGS: [(&str, Range); 61] = [
     ("agent.morphology", Word(&["chain", "star", "tee", "y"])),
     ("agent.part_length", Real(1e-3, 1e3)),
     ("agent.part_radius", Real(1e-3, 5.0)),
@@ -59,6 +59,7 @@ const SETTINGS: [(&str, Range); 60] = [
     ("physics.duration", Real(0.1, 238_095.2)),
     ("physics.turn_limit", Real(1e-3, 1e6)),
     ("physics.angular_momentum", Word(&["engine", "conserved"])),
+    ("physics.fluid_density", Real(0.0, 1e6)),
     ("sense.interval", Real(0.01, 10_000.0)),
     ("sense.fluid_density", Real(1e-6, 1e6)),
     ("sense.threshold", Real(0.0, 1e6)),

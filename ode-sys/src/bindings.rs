@@ -393,6 +393,9 @@ unsafe extern "C" {
     pub fn dBodyAddForce(arg1: dBodyID, fx: dReal, fy: dReal, fz: dReal);
 }
 unsafe extern "C" {
+    pub fn dBodyAddTorque(arg1: dBodyID, fx: dReal, fy: dReal, fz: dReal);
+}
+unsafe extern "C" {
     pub fn dJointCreateBall(arg1: dWorldID, arg2: dJointGroupID) -> dJointID;
 }
 unsafe extern "C" {

@@ -169,6 +169,7 @@ mod tests {
             "experiment.seed",
             "physics.turn_limit",
             "physics.angular_momentum",
+            "physics.fluid_density",
             "sense.threshold",
         ];
         let mut section = "";

@@ -40,6 +40,7 @@ impl Scene {
                 duration: 200.0,
                 turn_limit: 1e6,
                 angular_momentum: AngularMomentum::Engine,
+                fluid_density: 0.0,
             },
         }
     }

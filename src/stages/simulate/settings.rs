@@ -100,6 +100,9 @@ pub struct Physics {
     pub turn_limit: f64,
     /// What becomes of the angular momentum that steps add.
     pub angular_momentum: AngularMomentum,
+    /// ρ of a fluid that pushes the parts, kg/m³: the pressure of equation 27 on all of their surface. With 0, as the paper is
+    /// taken here, the fluid is felt, but does not push.
+    pub fluid_density: f64,
 }
 
 impl Physics {
@@ -120,7 +123,11 @@ impl Physics {
     pub fn check(&self) -> Checked {
         moderate("physics.step", self.step)?;
         positive("physics.duration", self.duration)?;
+        gain("physics.fluid_density", self.fluid_density)?;
         let turns = self.turn_limit;
-        check("physics.turn_limit", turns, (0.001..=1e6).contains(&turns), "0.001 to 1000000")
+        check("physics.turn_limit", turns, (0.001..=1e6).contains(&turns), "0.001 to 1000000")?;
+        let free = self.angular_momentum == AngularMomentum::Engine;
+        let range = "0 where physics.angular_momentum is conserved: a fluid that pushes changes it";
+        check("physics.fluid_density", self.fluid_density, free || self.fluid_density == 0.0, range)
     }
 }

@@ -11,13 +11,16 @@ use std::sync::Once;
 
 use ode_sys as ode;
 
+use self::fluid::Surface;
 use self::joints::EngineJoint;
 use self::momentum::{Inertia, Moving};
 use super::settings::{AngularMomentum, Physics};
 use crate::stages::agent::{Agent, Part, Shape, Vector3};
 
+mod fluid;
 mod joints;
 mod momentum;
+mod places;
 
 pub use self::joints::ball_error;
 
@@ -61,6 +64,8 @@ pub struct World {
     /// Of each body.
     inertias: Vec<Inertia>,
     angular_momentum: AngularMomentum,
+    /// Of each body, where a fluid pushes it; none where no fluid does.
+    surfaces: Vec<Surface>,
     joints: Vec<EngineJoint>,
     step: f64,
     steps: u64,
@@ -160,6 +165,9 @@ impl World {
 
             let (bodies, inertias): (Vec<_>, _) =
                 agent.parts.iter().map(|part| make_body(world, part)).unzip();
+            let pushed = if physics.fluid_density > 0.0 { agent.parts.as_slice() } else { &[] };
+            let surfaces =
+                pushed.iter().map(|part| Surface::new(&part.shape, physics.fluid_density)).collect();
             let joints = agent.joints.iter().map(|joint| EngineJoint::new(world, &bodies, joint)).collect();
             let mut world = Self {
                 world,
@@ -167,6 +175,7 @@ impl World {
                 bodies,
                 inertias,
                 angular_momentum: physics.angular_momentum,
+                surfaces,
                 joints,
                 step: physics.step,
                 steps: 0,
@@ -190,6 +199,7 @@ impl World {
         self.steps += 1;
         let unstable =
             |event: String| Unstable { event, step: self.steps, time: self.steps as f64 * self.step };
+        self.let_the_fluid_push();
         // SAFETY: the world is live and has not failed before, its step is positive, and its state was
         // found finite after the last one.
         if unsafe { ode::ode_shim_world_step(self.world, self.step) } != 0 {
@@ -213,6 +223,19 @@ impl World {
             self.take_rotation_off();
         }
         Ok(())
+    }
+
+    /// Applies the forces of the fluid for the next step.
+    fn let_the_fluid_push(&self) {
+        for (part, surface) in self.surfaces.iter().enumerate() {
+            let (linear, angular) = self.velocity(part);
+            let (force, torque) = surface.push(&self.pose(part), linear, angular);
+            // SAFETY: the body is live, and forces are those of velocities that were found finite.
+            unsafe {
+                ode::dBodyAddForce(self.bodies[part], force[0], force[1], force[2]);
+                ode::dBodyAddTorque(self.bodies[part], torque[0], torque[1], torque[2]);
+            }
+        }
     }
 
     /// Brings the angular momentum back to 0 by a rotation of the whole body, which moves no joint.

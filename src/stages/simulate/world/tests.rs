@@ -8,6 +8,8 @@ use super::super::settings::{AngleError, Controller};
 use super::*;
 use crate::numerics::rng::stream;
 
+mod pushed;
+
 fn agent_and_scene() -> (Agent, Scene) {
     let scene = Scene::new();
     (scene.agent(), scene)

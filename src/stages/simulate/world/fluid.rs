@@ -1,0 +1,162 @@
+//! A fluid that pushes what moves in it, by the pressure that sensors feel (equation 27).
+//!
+//! Where the surface moves outward, the pressure ρ (ṗ · n)² pushes it back; elsewhere there is none. So a body that swims is
+//! slowed down, never sped up, and goes on for a while when it stops to move its joints.
+
+use super::Pose;
+use super::places::places;
+use crate::numerics::simd::vectorised;
+use crate::stages::agent::{Shape, Spot, Vector3};
+
+/// Places whose pressures are added side by side.
+const LANES: usize = 8;
+type Lanes = [f64; LANES];
+
+/// The surface of a part, as what a push takes of its places.
+#[derive(Debug, Clone)]
+pub struct Surface(Vec<Places>);
+
+/// Some places, in the frame of the part.
+#[derive(Debug, Clone, Default)]
+struct Places {
+    /// Normal, and position × normal: the lever of a force along it.
+    factors: [Lanes; 6],
+    /// Density times area, kg/m.
+    weights: Lanes,
+}
+
+impl Surface {
+    /// That of a part in a fluid of this density, kg/m³.
+    pub fn new(shape: &Shape, density: f64) -> Self {
+        let gathered = |spots: &[(Spot, f64)]| {
+            let mut places = Places::default();
+            for (lane, (spot, area)) in spots.iter().enumerate() {
+                let ([x, y, z], [a, b, c]) = (spot.position, spot.normal);
+                let factors = [a, b, c, y * c - z * b, z * a - x * c, x * b - y * a];
+                places.factors.iter_mut().zip(factors).for_each(|(lanes, factor)| lanes[lane] = factor);
+                places.weights[lane] = density * area;
+            }
+            places
+        };
+        Self(places(shape).chunks(LANES).map(gathered).collect())
+    }
+
+    /// Force (N) and torque about the centre (N m) on the part, in the world's frame, where it moves with these velocities
+    /// of the world's frame, m/s and rad/s.
+    ///
+    /// The outward speed of a place is linear in both: n · (v + ω × r) = n · v + (r × n) · ω.
+    pub fn push(&self, pose: &Pose, linear: Vector3, angular: Vector3) -> (Vector3, Vector3) {
+        let own = |x: Vector3| {
+            [0, 1, 2].map(|column| (0..3).map(|row| pose.rotation[row][column] * x[row]).sum::<f64>())
+        };
+        let ([a, b, c], [d, e, f]) = (own(linear), own(angular));
+        let mut lanes = [[0.0; LANES]; 6];
+        vectorised(
+            #[inline(always)]
+            || self.add(&[a, b, c, d, e, f], &mut lanes),
+        );
+        let [a, b, c, d, e, f] = lanes.map(|lanes| -lanes.iter().sum::<f64>());
+        let world = |x: Vector3| pose.rotation.map(|row| row.iter().zip(x).map(|(r, x)| r * x).sum());
+        (world([a, b, c]), world([d, e, f]))
+    }
+
+    /// Adds the pressures times the factors.
+    #[inline(always)]
+    fn add(&self, velocity: &[f64; 6], sums: &mut [Lanes; 6]) {
+        for Places { factors, weights } in &self.0 {
+            let mut speeds = [0.0; LANES];
+            for (factors, velocity) in factors.iter().zip(velocity) {
+                for lane in 0..LANES {
+                    speeds[lane] = factors[lane].mul_add(*velocity, speeds[lane]);
+                }
+            }
+            let mut forces = [0.0; LANES];
+            for lane in 0..LANES {
+                let outward = f64::max(speeds[lane], 0.0);
+                forces[lane] = weights[lane] * outward * outward;
+            }
+            for (sums, factors) in sums.iter_mut().zip(factors) {
+                for lane in 0..LANES {
+                    sums[lane] = factors[lane].mul_add(forces[lane], sums[lane]);
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::PI;
+
+    use super::*;
+
+    const DENSITY: f64 = 1010.0;
+    const UPRIGHT: Pose =
+        Pose { position: [0.0; 3], rotation: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]] };
+    const SHAPES: [Shape; 4] = [
+        Shape::Cylinder { radius: 0.03, length: 0.5 },
+        Shape::Capsule { radius: 0.03, length: 0.5 },
+        Shape::Sphere { radius: 0.1 },
+        Shape::Box { sides: [0.1, 0.2, 0.3] },
+    ];
+
+    fn push(shape: Shape, linear: Vector3, angular: Vector3) -> (Vector3, Vector3) {
+        Surface::new(&shape, DENSITY).push(&UPRIGHT, linear, angular)
+    }
+
+    /// Integrals of ρ (ṗ · n)² n over the surface that moves outward.
+    #[test]
+    fn forces_are_the_integral_of_the_pressure() {
+        let speed = 0.3;
+        let dynamic = DENSITY * speed * speed;
+        for (shape, direction, area) in [
+            // 2 r L ∫ cos³ from 0 to a right angle.
+            (SHAPES[0], [1.0, 0.0, 0.0], 4.0 / 3.0 * 0.03 * 0.5),
+            // 2 π r² ∫ cos³ sin over the same.
+            (SHAPES[2], [0.6, 0.0, 0.8], PI * 0.01 / 2.0),
+            (SHAPES[1], [0.0, 1.0, 0.0], 4.0 / 3.0 * 0.03 * 0.5 + PI * 0.0009 / 2.0),
+            (SHAPES[3], [0.0, 0.0, -1.0], 0.02),
+        ] {
+            let (force, torque) = push(shape, direction.map(|x| speed * x), [0.0; 3]);
+            for (found, along) in force.iter().zip(direction) {
+                let right = -dynamic * area * along;
+                assert!((found - right).abs() < 0.03 * dynamic * area, "{shape:?}: {force:?}");
+            }
+            let lever = torque.iter().map(|x| x.abs()).fold(0.0, f64::max);
+            assert!(lever < 0.02 * dynamic * area * shape.half_length(), "{shape:?}: {torque:?}");
+        }
+    }
+
+    /// About an axis across it, a slender cylinder has ∫ 4/3 ρ r (ω z)² |z| dz = 4/3 ρ r ω² (L / 2)⁴ / 2.
+    #[test]
+    fn a_cylinder_is_held_back_where_it_turns_over_and_not_about_its_axis() {
+        let Shape::Cylinder { radius, length } = SHAPES[0] else { unreachable!() };
+        let right = 4.0 / 3.0 * DENSITY * radius * 4.0 * (length / 2.0_f64).powi(4) / 2.0;
+        let (_, across) = push(SHAPES[0], [0.0; 3], [0.0, 2.0, 0.0]);
+        assert!((across[1] + right).abs() < 0.05 * right, "{across:?} {right}");
+        let (force, along) = push(SHAPES[0], [0.0; 3], [0.0, 0.0, 2.0]);
+        assert!(along.iter().chain(&force).all(|x| x.abs() < 1e-12 * right), "{force:?} {along:?}");
+    }
+
+    #[test]
+    fn no_movement_gains_energy_and_turning_the_part_turns_the_push() {
+        let turn = Pose { rotation: [[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], ..UPRIGHT };
+        let turned = |x: Vector3| turn.rotation.map(|row| (0..3).map(|i| row[i] * x[i]).sum::<f64>());
+        for shape in SHAPES {
+            let surface = Surface::new(&shape, DENSITY);
+            for (linear, angular) in [
+                ([0.1, -0.2, 0.3], [0.0; 3]),
+                ([0.0; 3], [1.0, 2.0, -1.0]),
+                ([0.1, 0.0, 0.1], [0.5, 1.0, 2.0]),
+            ] {
+                let (force, torque) = surface.push(&UPRIGHT, linear, angular);
+                let power: f64 = (0..3).map(|i| force[i] * linear[i] + torque[i] * angular[i]).sum();
+                assert!(power < 0.0, "{shape:?}: {power}");
+                let (other_force, other_torque) = surface.push(&turn, turned(linear), turned(angular));
+                for (found, right) in [(other_force, turned(force)), (other_torque, turned(torque))] {
+                    assert!((0..3).all(|i| (found[i] - right[i]).abs() < 1e-12), "{found:?} {right:?}");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,131 @@
+//! Places on a surface that stand for all of it, with their areas: products of even rules, which keep the symmetry of the shape.
+
+use std::f64::consts::{PI, TAU};
+
+use crate::stages::agent::{Shape, Spot, Vector3};
+
+/// Places around a ring, rings along a cylinder, rings on half a ball, and places along an edge of a box.
+const AROUND: usize = 12;
+const ALONG: usize = 12;
+const ROUND: usize = 3;
+const ACROSS: usize = 4;
+
+/// Places that stand for the whole surface, with their areas, m².
+pub fn places(shape: &Shape) -> Vec<(Spot, f64)> {
+    match *shape {
+        Shape::Cylinder { radius, length } => {
+            // The middle of a ring of half the area of an end.
+            let end = |up: f64| Ring {
+                off: radius / 2.0_f64.sqrt(),
+                height: up * length / 2.0,
+                up,
+                area: PI * radius * radius,
+            };
+            let rings: Vec<Ring> = [-1.0, 1.0].into_iter().map(end).chain(side(radius, length)).collect();
+            around(&rings)
+        }
+        Shape::Capsule { radius, length } => {
+            let rings: Vec<Ring> = ball(radius, length).into_iter().chain(side(radius, length)).collect();
+            around(&rings)
+        }
+        Shape::Sphere { radius } => around(&ball(radius, 0.0)),
+        Shape::Box { sides } => faces(sides),
+    }
+}
+
+/// Places around the axis that share an area.
+struct Ring {
+    /// Distance from the axis, m.
+    off: f64,
+    height: f64,
+    /// Of the normal, along the axis.
+    up: f64,
+    area: f64,
+}
+
+/// The side of a cylinder.
+fn side(radius: f64, length: f64) -> impl Iterator<Item = Ring> {
+    (0..ALONG).map(move |at| Ring {
+        off: radius,
+        height: ((at as f64 + 0.5) / ALONG as f64 - 0.5) * length,
+        up: 0.0,
+        area: TAU * radius * length / ALONG as f64,
+    })
+}
+
+/// Two half balls so far apart, in rings of equal height, which have equal areas (Archimedes).
+fn ball(radius: f64, apart: f64) -> Vec<Ring> {
+    let ring = |(side, at): (f64, usize)| {
+        let up = side * (at as f64 + 0.5) / ROUND as f64;
+        Ring {
+            off: radius * (1.0 - up * up).sqrt(),
+            height: radius * up + side * apart / 2.0,
+            up,
+            area: TAU * radius * radius / ROUND as f64,
+        }
+    };
+    [-1.0, 1.0].into_iter().flat_map(|side| (0..ROUND).map(move |at| (side, at))).map(ring).collect()
+}
+
+fn around(rings: &[Ring]) -> Vec<(Spot, f64)> {
+    let places = |ring: &Ring| {
+        let &Ring { off, height, up, area } = ring;
+        let out = (1.0 - up * up).max(0.0).sqrt();
+        (0..AROUND)
+            .map(move |at| {
+                let (sine, cosine) = (TAU * at as f64 / AROUND as f64).sin_cos();
+                let position = [off * cosine, off * sine, height];
+                (Spot { position, normal: [out * cosine, out * sine, up] }, area / AROUND as f64)
+            })
+            .collect::<Vec<_>>()
+    };
+    rings.iter().flat_map(places).collect()
+}
+
+fn faces(sides: Vector3) -> Vec<(Spot, f64)> {
+    let place = |at: usize| (at as f64 + 0.5) / ACROSS as f64 - 0.5;
+    let mut spots = Vec::new();
+    for (axis, way) in (0..3).flat_map(|axis| [(axis, -1.0), (axis, 1.0)]) {
+        let (u, v) = ((axis + 1) % 3, (axis + 2) % 3);
+        for (row, column) in (0..ACROSS).flat_map(|row| (0..ACROSS).map(move |column| (row, column))) {
+            let (mut position, mut normal) = ([0.0; 3], [0.0; 3]);
+            (position[axis], normal[axis]) = (way * sides[axis] / 2.0, way);
+            (position[u], position[v]) = (place(row) * sides[u], place(column) * sides[v]);
+            spots.push((Spot { position, normal }, sides[u] * sides[v] / (ACROSS * ACROSS) as f64));
+        }
+    }
+    spots
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn places_have_the_area_and_the_volume_of_the_shape() {
+        for shape in [
+            Shape::Cylinder { radius: 0.1, length: 0.4 },
+            Shape::Capsule { radius: 0.1, length: 0.4 },
+            Shape::Sphere { radius: 0.1 },
+            Shape::Box { sides: [0.1, 0.2, 0.4] },
+        ] {
+            let places = places(&shape);
+            let area: f64 = places.iter().map(|(_, area)| area).sum();
+            assert!((area / shape.area() - 1.0).abs() < 1e-12, "{shape:?}: {area}");
+            for axis in 0..3 {
+                let sum: f64 = places.iter().map(|(spot, area)| spot.normal[axis] * area).sum();
+                assert!(sum.abs() < 1e-12 * area, "{shape:?}: {sum}");
+            }
+            // Gauss: the integral of position · normal is three times the volume.
+            let flux = |spot: &Spot| (0..3).map(|i| spot.normal[i] * spot.position[i]).sum::<f64>();
+            let volume = places.iter().map(|(spot, area)| flux(spot) * area).sum::<f64>() / 3.0;
+            let right = match shape {
+                Shape::Cylinder { radius, length } => PI * radius * radius * length,
+                Shape::Capsule { radius, length } => PI * radius * radius * (length + 4.0 / 3.0 * radius),
+                Shape::Sphere { radius } => 4.0 / 3.0 * PI * radius.powi(3),
+                Shape::Box { sides } => sides.iter().product(),
+            };
+            assert!((volume / right - 1.0).abs() < 0.01, "{shape:?}: {volume} {right}");
+        }
+    }
+}
