@@ -66,6 +66,8 @@ pub struct World {
     angular_momentum: AngularMomentum,
     /// Of each body, where a fluid pushes it; none where no fluid does.
     surfaces: Vec<Surface>,
+    /// The angular momentum that it has given the body about its centre of mass, kg m²/s.
+    given: Vector3,
     joints: Vec<EngineJoint>,
     step: f64,
     steps: u64,
@@ -176,6 +178,7 @@ impl World {
                 inertias,
                 angular_momentum: physics.angular_momentum,
                 surfaces,
+                given: [0.0; 3],
                 joints,
                 step: physics.step,
                 steps: 0,
@@ -196,10 +199,12 @@ impl World {
     /// [`Unstable`] if a part turns by more than `physics.turn_limit` in a step, leaves the range of numbers, or makes
     /// the engine give up. The world is then of no more use.
     pub fn step(&mut self) -> Result<(), Unstable> {
+        if !self.surfaces.is_empty() {
+            self.let_the_fluid_push();
+        }
         self.steps += 1;
         let unstable =
             |event: String| Unstable { event, step: self.steps, time: self.steps as f64 * self.step };
-        self.let_the_fluid_push();
         // SAFETY: the world is live and has not failed before, its step is positive, and its state was
         // found finite after the last one.
         if unsafe { ode::ode_shim_world_step(self.world, self.step) } != 0 {
@@ -225,28 +230,40 @@ impl World {
         Ok(())
     }
 
-    /// Applies the forces of the fluid for the next step.
-    fn let_the_fluid_push(&self) {
-        for (part, surface) in self.surfaces.iter().enumerate() {
+    /// All parts as they move now.
+    fn moving(&self) -> Vec<Moving> {
+        let part = |part: usize| {
             let (linear, angular) = self.velocity(part);
-            let (force, torque) = surface.push(&self.pose(part), linear, angular);
-            // SAFETY: the body is live, and forces are those of velocities that were found finite.
+            Moving { inertia: self.inertias[part], pose: self.pose(part), linear, angular }
+        };
+        (0..self.bodies.len()).map(part).collect()
+    }
+
+    /// Applies the forces of the fluid for the next step, and keeps account of the angular momentum that they give.
+    fn let_the_fluid_push(&mut self) {
+        let parts = self.moving();
+        let centre = momentum::centre_of_mass(&parts);
+        for (at, (surface, part)) in self.surfaces.iter().zip(&parts).enumerate() {
+            let push = surface.push(&part.pose, part.linear, part.angular);
+            let ([x, y, z], torque) = fluid::over_step(push, part, self.step);
+            // SAFETY: the body is live, and a force is finite: it stops a part that was found to have a finite velocity within
+            // the step at most.
             unsafe {
-                ode::dBodyAddForce(self.bodies[part], force[0], force[1], force[2]);
-                ode::dBodyAddTorque(self.bodies[part], torque[0], torque[1], torque[2]);
+                ode::dBodyAddForce(self.bodies[at], x, y, z);
+                ode::dBodyAddTorque(self.bodies[at], torque[0], torque[1], torque[2]);
+            }
+            let [a, b, c] = [0, 1, 2].map(|i| part.pose.position[i] - centre[i]);
+            let lever = [b * z - c * y, c * x - a * z, a * y - b * x];
+            for axis in 0..3 {
+                self.given[axis] += self.step * (torque[axis] + lever[axis]);
             }
         }
     }
 
-    /// Brings the angular momentum back to 0 by a rotation of the whole body, which moves no joint.
+    /// Brings the angular momentum back to what the fluid has given, by a rotation of the whole body, which moves no joint.
     fn take_rotation_off(&mut self) {
-        let parts: Vec<Moving> = (0..self.bodies.len())
-            .map(|part| {
-                let (linear, angular) = self.velocity(part);
-                Moving { inertia: self.inertias[part], pose: self.pose(part), linear, angular }
-            })
-            .collect();
-        for (body, ([x, y, z], [a, b, c])) in self.bodies.iter().zip(momentum::without_rotation(&parts)) {
+        let kept = momentum::with_angular_momentum(self.given, &self.moving());
+        for (body, ([x, y, z], [a, b, c])) in self.bodies.iter().zip(kept) {
             // SAFETY: the bodies are live, and velocities, of which these are sums with finite factors, were found finite.
             unsafe {
                 ode::dBodySetLinearVel(*body, x, y, z);

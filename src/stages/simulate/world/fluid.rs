@@ -1,9 +1,12 @@
 //! A fluid that pushes what moves in it, by the pressure that sensors feel (equation 27).
 //!
-//! Where the surface moves outward, the pressure ρ (ṗ · n)² pushes it back; elsewhere there is none. So a body that swims is
-//! slowed down, never sped up, and goes on for a while when it stops to move its joints.
+//! Where the surface moves outward, the pressure ρ (ṗ · n)² pushes it back; elsewhere there is none. That takes energy from a
+//! part at every moment; the body as a whole may be set in motion, as one that swims, and glides on when its joints stop. It
+//! is the form drag of a plate or a cylinder in about its real size: no friction, no wake, and no mass of the fluid that
+//! moves along.
 
 use super::Pose;
+use super::momentum::Moving;
 use super::places::places;
 use crate::numerics::simd::vectorised;
 use crate::stages::agent::{Shape, Spot, Vector3};
@@ -15,6 +18,20 @@ type Lanes = [f64; LANES];
 /// The surface of a part, as what a push takes of its places.
 #[derive(Debug, Clone)]
 pub struct Surface(Vec<Places>);
+
+/// Force, N, and torque about the centre of the part, N m, in the world's frame.
+pub type Push = (Vector3, Vector3);
+
+/// What of a push acts over a step, s: all of it over a short one, and never so much that the part gains energy. It makes the step
+/// of a glide exact, v / (1 + c v h): an explicit push would turn a fast part round.
+pub fn over_step((force, torque): Push, part: &Moving, step: f64) -> Push {
+    let dot = |a: Vector3, b: Vector3| (0..3).map(|i| a[i] * b[i]).sum::<f64>();
+    let power = -dot(force, part.linear) - dot(torque, part.angular);
+    // Twice the kinetic energy that the push would give the part if it rested, over the square of the step.
+    let gain = dot(force, force) / part.inertia.mass + dot(torque, part.turned_by(torque));
+    let share = if power > 0.0 { 1.0 / (1.0 + step * gain / power) } else { 1.0 };
+    (force.map(|x| share * x), torque.map(|x| share * x))
+}
 
 /// Some places, in the frame of the part.
 #[derive(Debug, Clone, Default)]
@@ -41,11 +58,10 @@ impl Surface {
         Self(places(shape).chunks(LANES).map(gathered).collect())
     }
 
-    /// Force (N) and torque about the centre (N m) on the part, in the world's frame, where it moves with these velocities
-    /// of the world's frame, m/s and rad/s.
+    /// The push on the part, where it moves with these velocities of the world's frame, m/s and rad/s.
     ///
     /// The outward speed of a place is linear in both: n · (v + ω × r) = n · v + (r × n) · ω.
-    pub fn push(&self, pose: &Pose, linear: Vector3, angular: Vector3) -> (Vector3, Vector3) {
+    pub fn push(&self, pose: &Pose, linear: Vector3, angular: Vector3) -> Push {
         let own = |x: Vector3| {
             [0, 1, 2].map(|column| (0..3).map(|row| pose.rotation[row][column] * x[row]).sum::<f64>())
         };

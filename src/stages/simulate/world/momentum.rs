@@ -1,8 +1,9 @@
-//! The angular momentum of a body about its centre of mass, and the rotation of the whole body that has it.
+//! The angular momentum of a body about its centre of mass, and the rotation of the whole body that changes it.
 //!
-//! Nothing acts on the body from outside, and it starts at rest, so its momentum is 0. A step of ODE keeps the linear one, but
-//! not the angular one: forces of joints act where anchors are, which come apart a little, and rotations are advanced in turn
-//! with velocities. While all joints are locked the body is rigid, and what was added makes it turn.
+//! Only a fluid acts on the body from outside, if any does, and it starts at rest. So its momentum is what the fluid has given it,
+//! or 0. A step of ODE keeps the linear one, but not the angular one: forces of joints act where anchors are, which come apart
+//! a little, and rotations are advanced in turn with velocities. While all joints are locked the body is rigid, and what was
+//! added makes it turn.
 
 use nalgebra::{Matrix3, Vector3 as Column};
 
@@ -29,14 +30,28 @@ pub struct Moving {
     pub angular: Vector3,
 }
 
-/// Linear and angular velocities of all parts without the rotation of the whole body about its centre of mass that has its
-/// angular momentum, which is then 0. The rates of joints stay as they are.
-pub fn without_rotation(parts: &[Moving]) -> Vec<(Vector3, Vector3)> {
+impl Moving {
+    /// The angular acceleration, rad/s², by a torque, N m, both in the world's frame.
+    pub fn turned_by(&self, torque: Vector3) -> Vector3 {
+        let turned = matrix(&self.pose.rotation);
+        let own = matrix(&self.inertia.tensor).cholesky().expect("a part has a volume");
+        (turned * own.solve(&(turned.transpose() * Column::from(torque)))).into()
+    }
+}
+
+/// The centre of mass of a body.
+pub fn centre_of_mass(parts: &[Moving]) -> Vector3 {
     let mass: f64 = parts.iter().map(|part| part.inertia.mass).sum();
-    let centre =
-        parts.iter().map(|part| part.inertia.mass * Column::from(part.pose.position)).sum::<Column<f64>>()
-            / mass;
-    let mut momentum = Column::zeros();
+    let moment: Column<f64> =
+        parts.iter().map(|part| part.inertia.mass * Column::from(part.pose.position)).sum();
+    (moment / mass).into()
+}
+
+/// Linear and angular velocities of all parts with a rotation of the whole body about its centre of mass added that makes its
+/// angular momentum, kg m²/s, the one that is wanted. The rates of joints stay as they are.
+pub fn with_angular_momentum(wanted: Vector3, parts: &[Moving]) -> Vec<(Vector3, Vector3)> {
+    let centre = Column::from(centre_of_mass(parts));
+    let mut momentum = -Column::from(wanted);
     let mut inertia = Matrix3::zeros();
     for part in parts {
         let turned = matrix(&part.pose.rotation);
@@ -81,7 +96,7 @@ mod tests {
     fn a_body_that_turns_as_one_comes_to_rest_and_goes_on_along_its_way() {
         // About (1, 0, 0), at 0.5 rad/s about z, and 3 m/s along x.
         let parts = [-1.0, 3.0].map(|x| part([x, 0.0, 0.0], [3.0, 0.5 * (x - 1.0), 0.0], [0.0, 0.0, 0.5]));
-        for found in without_rotation(&parts) {
+        for found in with_angular_momentum([0.0; 3], &parts) {
             assert!(off(found, ([3.0, 0.0, 0.0], [0.0; 3])) < 1e-12, "{found:?}");
         }
     }
@@ -94,7 +109,9 @@ mod tests {
         // The part's long axis, of 0.02 kg m², lies along −y: so it has 0.02 of y and 0.1 of z. Both parts and their places,
         // 2 kg at 1 m each, have 0.2 about x, 0.04 + 4 about y and 0.2 + 4 about z.
         let rotation = [0.0, 0.02 * 0.3 / 4.04, 0.1 * 0.4 / 4.2];
-        for (found, (part, way)) in without_rotation(&parts).into_iter().zip(parts.iter().zip([-1.0, 1.0])) {
+        for (found, (part, way)) in
+            with_angular_momentum([0.0; 3], &parts).into_iter().zip(parts.iter().zip([-1.0, 1.0]))
+        {
             let angular = [0, 1, 2].map(|i| part.angular[i] - rotation[i]);
             // Less rotation × place.
             let linear = [0.0, -rotation[2] * way, rotation[1] * way];
@@ -103,9 +120,18 @@ mod tests {
     }
 
     #[test]
+    fn a_body_at_rest_gets_the_momentum_that_is_wanted() {
+        let parts = [-1.0, 1.0].map(|x| part([x, 0.0, 0.0], [0.0; 3], [0.0; 3]));
+        // Moments as above: 4.04 about y.
+        for (found, way) in with_angular_momentum([0.0, 0.808, 0.0], &parts).into_iter().zip([-1.0, 1.0]) {
+            assert!(off(found, ([0.0, 0.0, -0.2 * way], [0.0, 0.2, 0.0])) < 1e-12, "{found:?}");
+        }
+    }
+
+    #[test]
     fn parts_that_turn_against_each_other_are_left_alone() {
         let parts = [-1.0, 1.0].map(|x| part([x, 0.0, 0.0], [0.0; 3], [0.0, 0.0, x]));
-        for (found, part) in without_rotation(&parts).into_iter().zip(&parts) {
+        for (found, part) in with_angular_momentum([0.0; 3], &parts).into_iter().zip(&parts) {
             assert!(off(found, (part.linear, part.angular)) < 1e-12, "{found:?}");
         }
     }

@@ -4,24 +4,18 @@ use std::f64::consts::{PI, TAU};
 
 use crate::stages::agent::{Shape, Spot, Vector3};
 
-/// Places around a ring, rings along a cylinder, rings on half a ball, and places along an edge of a box.
+/// Places around a ring, rings along a cylinder, on its end and on half a ball, and places along an edge of a box.
 const AROUND: usize = 12;
 const ALONG: usize = 12;
-const ROUND: usize = 3;
-const ACROSS: usize = 4;
+const ENDS: usize = 2;
+const ROUND: usize = 6;
+const ACROSS: usize = 8;
 
 /// Places that stand for the whole surface, with their areas, m².
 pub fn places(shape: &Shape) -> Vec<(Spot, f64)> {
     match *shape {
         Shape::Cylinder { radius, length } => {
-            // The middle of a ring of half the area of an end.
-            let end = |up: f64| Ring {
-                off: radius / 2.0_f64.sqrt(),
-                height: up * length / 2.0,
-                up,
-                area: PI * radius * radius,
-            };
-            let rings: Vec<Ring> = [-1.0, 1.0].into_iter().map(end).chain(side(radius, length)).collect();
+            let rings: Vec<Ring> = ends(radius, length).chain(side(radius, length)).collect();
             around(&rings)
         }
         Shape::Capsule { radius, length } => {
@@ -50,6 +44,18 @@ fn side(radius: f64, length: f64) -> impl Iterator<Item = Ring> {
         height: ((at as f64 + 0.5) / ALONG as f64 - 0.5) * length,
         up: 0.0,
         area: TAU * radius * length / ALONG as f64,
+    })
+}
+
+/// The ends of a cylinder, in rings of equal area.
+fn ends(radius: f64, length: f64) -> impl Iterator<Item = Ring> {
+    [-1.0, 1.0].into_iter().flat_map(move |up| {
+        (0..ENDS).map(move |at| Ring {
+            off: radius * ((at as f64 + 0.5) / ENDS as f64).sqrt(),
+            height: up * length / 2.0,
+            up,
+            area: PI * radius * radius / ENDS as f64,
+        })
     })
 }
 
