@@ -170,9 +170,9 @@ def search(results):
     # The last round leaves no candidates, and one without a resolved candidate no winner.
     optional = ["next.toml", "best.toml"]
     there = [name for name in optional if (results / "search" / name).exists()]
-    copy([results / "search" / name for name in ["search.md", "scores.csv", "credits.csv", *there]], SHOWN / "twenty")
+    copy([results / "search" / name for name in ["search.md", "scores.csv", "credits.csv", *there]], SHOWN / "fluid")
     for name in set(optional) - set(there):
-        (SHOWN / "twenty" / name).unlink(missing_ok=True)
+        (SHOWN / "fluid" / name).unlink(missing_ok=True)
 
 
 def sensitivity(results):
@@ -276,8 +276,10 @@ def deviations():
     folder = ROOT / "reproduce"
     study = tomllib.loads((folder / "sensitivity.toml").read_text())
     # What the search has varied.
-    with open(SHOWN / "screen" / "scores.csv", newline="") as file:
-        searched = {key for row in csv.DictReader(file) for key in re.findall(r"([\w.]+) = ", row["settings"])}
+    searched = set()
+    for screen in ["screen", "fluid-screen"]:
+        with open(SHOWN / screen / "scores.csv", newline="") as file:
+            searched.update(key for row in csv.DictReader(file) for key in re.findall(r"([\w.]+) = ", row["settings"]))
     lines = ["| setting | the paper says | ours | reason | source |", "|---|---|---|---|---|"]
     named = set()
     for part in study["part"]:

@@ -6,6 +6,9 @@ use toml::{Table, Value};
 /// `reproduce/search.toml`, the design of the search that the default comes from.
 pub const SEARCH: &str = include_str!("../../reproduce/search.toml");
 
+/// `reproduce/fluid.toml`, the design of its last part.
+pub const FLUID: &str = include_str!("../../reproduce/fluid.toml");
+
 /// `reproduce/sensitivity.toml`, the design of the study of what the paper leaves open.
 pub const SENSITIVITY: &str = include_str!("../../reproduce/sensitivity.toml");
 

@@ -200,7 +200,7 @@ impl Term {
 
 #[cfg(test)]
 mod tests {
-    use super::super::super::design::SEARCH;
+    use super::super::super::design::{FLUID, SEARCH};
     use super::*;
 
     #[test]
@@ -213,7 +213,6 @@ mod tests {
 
     #[test]
     fn its_last_part_has_the_same_score() {
-        const FLUID: &str = include_str!("../../../reproduce/fluid.toml");
         let (last, first) =
             (Design::parse(FLUID, "fluid.toml").unwrap(), Design::parse(SEARCH, "search.toml").unwrap());
         last.check(&last.all_candidates()).unwrap();

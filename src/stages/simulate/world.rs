@@ -144,7 +144,7 @@ unsafe fn make_body(world: ode::dWorldID, part: &Part) -> (ode::dBodyID, Inertia
         ode::dBodySetRotation(body, rotation.as_ptr());
         ode::dBodySetPosition(body, part.centre[0], part.centre[1], part.centre[2]);
         let tensor = [0, 4, 8].map(|row| [mass.I[row], mass.I[row + 1], mass.I[row + 2]]);
-        (body, Inertia { mass: mass.mass, tensor })
+        (body, Inertia::new(mass.mass, tensor))
     }
 }
 

@@ -15,8 +15,17 @@ use crate::stages::agent::Vector3;
 pub struct Inertia {
     /// kg.
     pub mass: f64,
-    /// About the centre of mass in the part's frame, kg m², by rows.
-    pub tensor: [Vector3; 3],
+    /// About the centre of mass in the part's frame, kg m².
+    tensor: Matrix3<f64>,
+    inverse: Matrix3<f64>,
+}
+
+impl Inertia {
+    /// Of a mass, kg, and a tensor about its centre, kg m², by rows.
+    pub fn new(mass: f64, tensor: [Vector3; 3]) -> Self {
+        let tensor = matrix(&tensor);
+        Self { mass, tensor, inverse: tensor.try_inverse().expect("a part has a volume") }
+    }
 }
 
 /// A part that moves.
@@ -34,8 +43,7 @@ impl Moving {
     /// The angular acceleration, rad/s², by a torque, N m, both in the world's frame.
     pub fn turned_by(&self, torque: Vector3) -> Vector3 {
         let turned = matrix(&self.pose.rotation);
-        let own = matrix(&self.inertia.tensor).cholesky().expect("a part has a volume");
-        (turned * own.solve(&(turned.transpose() * Column::from(torque)))).into()
+        (turned * (self.inertia.inverse * (turned.transpose() * Column::from(torque)))).into()
     }
 }
 
@@ -55,7 +63,7 @@ pub fn with_angular_momentum(wanted: Vector3, parts: &[Moving]) -> Vec<(Vector3,
     let mut inertia = Matrix3::zeros();
     for part in parts {
         let turned = matrix(&part.pose.rotation);
-        let own = turned * matrix(&part.inertia.tensor) * turned.transpose();
+        let own = turned * part.inertia.tensor * turned.transpose();
         let place = Column::from(part.pose.position) - centre;
         let mass = part.inertia.mass;
         momentum += own * Column::from(part.angular) + mass * place.cross(&Column::from(part.linear));
@@ -84,7 +92,7 @@ mod tests {
         let tensor = [[0.1, 0.0, 0.0], [0.0, 0.1, 0.0], [0.0, 0.0, 0.02]];
         // A quarter of a turn about x.
         let rotation = [[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]];
-        Moving { inertia: Inertia { mass: 2.0, tensor }, pose: Pose { position, rotation }, linear, angular }
+        Moving { inertia: Inertia::new(2.0, tensor), pose: Pose { position, rotation }, linear, angular }
     }
 
     fn off(found: (Vector3, Vector3), expected: (Vector3, Vector3)) -> f64 {
