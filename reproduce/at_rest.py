@@ -1,12 +1,15 @@
 #!/usr/bin/env python3
 """What a body feels while all of its joints are locked: reproduce/at_rest.py FOLDER...
 
-Each FOLDER is what `bodyschema simulate --out FOLDER` wrote. Nothing acts on the body from outside and it starts at rest, so
-with all joints locked it should rest, too, and feel nothing. Prints a line of CSV for each folder:
+Each FOLDER is what `bodyschema simulate --out FOLDER` wrote. Where no fluid pushes, nothing acts on the body from outside and it
+starts at rest, so with all joints locked it should rest, too, and feel nothing; in a fluid that pushes, it glides on. Prints a
+line of CSV for each folder:
 
 - locked: share of the samples at which no joint turns by more than 0.001 rad/s;
 - turn_locked, turn_else: median rate at which part 0 turns, rad/s, at those samples and at all others;
-- touch_locked, touch_else: median over samples of the mean root of the pressures, √Pa.
+- touch_locked, touch_else: median over samples of the mean root of the pressures, √Pa;
+- change: how much the roots of all pressures of a sample differ from those of the first folder, over these; the median over
+  samples. It says whether two ways to compute one movement agree.
 
 Needs NumPy.
 """
@@ -22,9 +25,23 @@ STILL = 1e-3  # rad/s
 def main(folders):
     if not folders:
         sys.exit(__doc__.strip())
-    print("folder,locked,turn_locked,turn_else,touch_locked,touch_else")
+    print("folder,locked,turn_locked,turn_else,touch_locked,touch_else,change")
+    first = roots(folders[0])
     for folder in folders:
-        print(",".join([folder, *("" if number is None else f"{number:.3g}" for number in at_rest(pathlib.Path(folder)))]))
+        numbers = [*at_rest(pathlib.Path(folder)), change(first, roots(folder))]
+        print(",".join([folder, *("" if number is None else f"{number:.3g}" for number in numbers)]))
+
+
+def roots(folder):
+    return numpy.sqrt(numpy.load(pathlib.Path(folder) / "tactile.npy"))
+
+
+def change(first, other):
+    """None if they have not the same samples and sensors."""
+    if first.shape != other.shape:
+        return None
+    felt = first.sum(axis=1)
+    return numpy.median(numpy.abs(first - other).sum(axis=1)[felt > 0] / felt[felt > 0]) if felt.any() else None
 
 
 def at_rest(folder):
@@ -37,7 +54,7 @@ def at_rest(folder):
     turned = numpy.load(folder / "poses.npy").astype(float)[:, 3:7]
     steps = [numpy.linalg.norm(turned[1:] - sign * turned[:-1], axis=1) for sign in (1, -1)]
     turn = 2 * numpy.minimum(*steps) / interval
-    touch = numpy.sqrt(numpy.load(folder / "tactile.npy")).mean(axis=1)
+    touch = roots(folder).mean(axis=1)
     median = lambda series, where: numpy.median(series[where]) if where.any() else None
     return [locked.mean(), *(median(series, where) for series in (turn, touch) for where in (locked, ~locked))]
 
