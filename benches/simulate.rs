@@ -14,9 +14,15 @@ use rayon::prelude::*;
 const MEASUREMENTS: usize = 3;
 
 fn main() {
-    for (name, controller) in [("torque", Controller::Torque), ("servo", Controller::Servo)] {
+    // The bare loop has no fluid.
+    let fluid = Settings::paper().physics.fluid_density;
+    for (name, controller, density) in [
+        ("torque", Controller::Torque, 0.0),
+        ("servo", Controller::Servo, 0.0),
+        ("servo in a fluid that pushes", Controller::Servo, fluid),
+    ] {
         let mut settings = Settings::paper();
-        settings.motion.controller = controller;
+        (settings.motion.controller, settings.physics.fluid_density) = (controller, density);
         one(name, &settings);
     }
     many(&Settings::paper());
