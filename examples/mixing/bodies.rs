@@ -147,7 +147,7 @@ fn page(conditions: &[Condition], chains: usize) -> String {
     let mut lines = vec![
         "## Bodies that nothing was chosen on\n".to_owned(),
         format!(
-            "{BODIES} bodies as in the default (seed {SEED}), maps of the distances, {chains} chains each that start apart: from one \
+            "{BODIES} bodies as in the former default ([no-fluid.toml](reproduce/no-fluid.toml); seed {SEED}), maps of the distances, {chains} chains each that start apart: from one \
              part, from k-means, and from labels at random. What a chain says is the consensus of the later half of its draws. \
              The share of chains that have exactly the true parts, every sensor of them, after so many sweeps; intervals are \
              Wilson's of {BODIES} trials, the bodies. [All chains](bodies-chains.csv).\n"

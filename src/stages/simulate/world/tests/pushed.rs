@@ -19,7 +19,7 @@ fn a_fluid_slows_a_body_down_by_the_closed_form() {
         (0..(time / physics.step).round() as usize).for_each(|_| world.step().unwrap());
         norm(world.velocity(2).0)
     };
-    assert!((speed_after(&scene.physics, 1.0) - start).abs() < 1e-9, "no fluid pushes by default");
+    assert!((speed_after(&scene.physics, 1.0) - start).abs() < 1e-9, "no fluid pushes in the fixture");
     scene.physics.fluid_density = 1010.0;
     let (mass, ..) = inertia(&scene);
     let (radius, length) = (scene.geometry.part_radius, scene.geometry.part_length);
