@@ -64,7 +64,7 @@ fn a_fluid_slows_a_spin_down_by_the_closed_form() {
     }
 }
 
-/// However fast a part is, no step of the fluid gives it energy, and the engine's angular momentum is what the fluid gave.
+/// However fast a part is, no step of the fluid gives it energy.
 #[test]
 fn a_fluid_takes_energy_from_whatever_moves() {
     let (agent, mut scene) = agent_and_scene();
