@@ -66,7 +66,7 @@ pub struct World {
     angular_momentum: AngularMomentum,
     /// Of each body, where a fluid pushes it; none where no fluid does.
     surfaces: Vec<Surface>,
-    /// The angular momentum that it has given the body about its centre of mass, kg m²/s.
+    /// The angular momentum that it has given the body about its centre of mass, kg m²/s; not counted where it is not conserved.
     given: Vector3,
     joints: Vec<EngineJoint>,
     step: f64,
@@ -239,10 +239,11 @@ impl World {
         (0..self.bodies.len()).map(part).collect()
     }
 
-    /// Applies the forces of the fluid for the next step, and keeps account of the angular momentum that they give.
+    /// Applies the forces of the fluid for the next step, and keeps account of the angular momentum that they give if it is needed.
     fn let_the_fluid_push(&mut self) {
         let parts = self.moving();
-        let centre = momentum::centre_of_mass(&parts);
+        let conserved = self.angular_momentum == AngularMomentum::Conserved;
+        let centre = conserved.then(|| momentum::centre_of_mass(&parts));
         for (at, (surface, part)) in self.surfaces.iter().zip(&parts).enumerate() {
             let push = surface.push(&part.pose, part.linear, part.angular);
             let ([x, y, z], torque) = fluid::over_step(push, part, self.step);
@@ -252,6 +253,7 @@ impl World {
                 ode::dBodyAddForce(self.bodies[at], x, y, z);
                 ode::dBodyAddTorque(self.bodies[at], torque[0], torque[1], torque[2]);
             }
+            let Some(centre) = centre else { continue };
             let [a, b, c] = [0, 1, 2].map(|i| part.pose.position[i] - centre[i]);
             let lever = [b * z - c * y, c * x - a * z, a * y - b * x];
             for axis in 0..3 {

@@ -7,17 +7,20 @@
 
 use super::Pose;
 use super::momentum::Moving;
-use super::places::places;
+use super::places::{places, side};
 use crate::numerics::simd::vectorised;
 use crate::stages::agent::{Shape, Spot, Vector3};
 
-/// Places whose pressures are added side by side.
+/// Places or rings whose pressures are added side by side.
 const LANES: usize = 8;
 type Lanes = [f64; LANES];
 
-/// The surface of a part, as what a push takes of its places.
+/// The surface of a part, as what a push takes of it.
 #[derive(Debug, Clone)]
-pub struct Surface(Vec<Places>);
+pub struct Surface {
+    rings: Vec<Rings>,
+    places: Vec<Places>,
+}
 
 /// Force, N, and torque about the centre of the part, N m, in the world's frame.
 pub type Push = (Vector3, Vector3);
@@ -31,6 +34,15 @@ pub fn over_step((force, torque): Push, part: &Moving, step: f64) -> Push {
     let gain = dot(force, force) / part.inertia.mass + dot(torque, part.turned_by(torque));
     let share = if power > 0.0 { 1.0 / (1.0 + step * gain / power) } else { 1.0 };
     (force.map(|x| share * x), torque.map(|x| share * x))
+}
+
+/// Some rings about the axis of the part.
+#[derive(Debug, Clone, Default)]
+struct Rings {
+    /// Height along the axis, m.
+    heights: Lanes,
+    /// 4/3 of density, radius and width, kg/m.
+    weights: Lanes,
 }
 
 /// Some places, in the frame of the part.
@@ -55,7 +67,18 @@ impl Surface {
             }
             places
         };
-        Self(places(shape).chunks(LANES).map(gathered).collect())
+        let ring = |some: &[(f64, f64)]| {
+            let mut rings = Rings::default();
+            for (lane, (height, area)) in some.iter().enumerate() {
+                rings.heights[lane] = *height;
+                rings.weights[lane] = 4.0 / 3.0 * density * area;
+            }
+            rings
+        };
+        Self {
+            rings: side(shape).chunks(LANES).map(ring).collect(),
+            places: places(shape).chunks(LANES).map(gathered).collect(),
+        }
     }
 
     /// The push on the part, where it moves with these velocities of the world's frame, m/s and rad/s.
@@ -77,9 +100,25 @@ impl Surface {
     }
 
     /// Adds the pressures times the factors.
+    ///
+    /// A ring whose centre moves across the axis with u feels (|u| cos θ)² on the half that goes ahead, θ from u; its sum is
+    /// 4/3 |u| u, because ∫ cos³ over a half turn is 4/3.
     #[inline(always)]
     fn add(&self, velocity: &[f64; 6], sums: &mut [Lanes; 6]) {
-        for Places { factors, weights } in &self.0 {
+        let [along_x, along_y, _, about_x, about_y, _] = *velocity;
+        for Rings { heights, weights } in &self.rings {
+            for lane in 0..LANES {
+                let height = heights[lane];
+                let (x, y) = (height.mul_add(about_y, along_x), height.mul_add(-about_x, along_y));
+                let size = weights[lane] * x.mul_add(x, y * y).sqrt();
+                let (x, y) = (size * x, size * y);
+                sums[0][lane] += x;
+                sums[1][lane] += y;
+                sums[3][lane] = height.mul_add(-y, sums[3][lane]);
+                sums[4][lane] = height.mul_add(x, sums[4][lane]);
+            }
+        }
+        for Places { factors, weights } in &self.places {
             let mut speeds = [0.0; LANES];
             for (factors, velocity) in factors.iter().zip(velocity) {
                 for lane in 0..LANES {

@@ -1,4 +1,5 @@
 //! Places on a surface that stand for all of it, with their areas: products of even rules, which keep the symmetry of the shape.
+//! The side of a cylinder is rings instead, because the push on a ring has a closed form.
 
 use std::f64::consts::{PI, TAU};
 
@@ -6,24 +7,29 @@ use crate::stages::agent::{Shape, Spot, Vector3};
 
 /// Places around a ring, rings along a cylinder, on its end and on half a ball, and places along an edge of a box.
 const AROUND: usize = 12;
-const ALONG: usize = 12;
+const ALONG: usize = 16;
 const ENDS: usize = 2;
 const ROUND: usize = 6;
 const ACROSS: usize = 8;
 
-/// Places that stand for the whole surface, with their areas, m².
+/// Places that stand for the surface, but for the [side] of a cylinder, with their areas, m².
 pub fn places(shape: &Shape) -> Vec<(Spot, f64)> {
     match *shape {
-        Shape::Cylinder { radius, length } => {
-            let rings: Vec<Ring> = ends(radius, length).chain(side(radius, length)).collect();
-            around(&rings)
-        }
-        Shape::Capsule { radius, length } => {
-            let rings: Vec<Ring> = ball(radius, length).into_iter().chain(side(radius, length)).collect();
-            around(&rings)
-        }
+        Shape::Cylinder { radius, length } => around(&ends(radius, length)),
+        Shape::Capsule { radius, length } => around(&ball(radius, length)),
         Shape::Sphere { radius } => around(&ball(radius, 0.0)),
         Shape::Box { sides } => faces(sides),
+    }
+}
+
+/// Rings that stand for the side of a cylinder: the height of each along the axis, m, and its radius times its width, m².
+pub fn side(shape: &Shape) -> Vec<(f64, f64)> {
+    match *shape {
+        Shape::Cylinder { radius, length } | Shape::Capsule { radius, length } => {
+            let height = |at: usize| ((at as f64 + 0.5) / ALONG as f64 - 0.5) * length;
+            (0..ALONG).map(|at| (height(at), radius * length / ALONG as f64)).collect()
+        }
+        Shape::Sphere { .. } | Shape::Box { .. } => Vec::new(),
     }
 }
 
@@ -37,26 +43,17 @@ struct Ring {
     area: f64,
 }
 
-/// The side of a cylinder.
-fn side(radius: f64, length: f64) -> impl Iterator<Item = Ring> {
-    (0..ALONG).map(move |at| Ring {
-        off: radius,
-        height: ((at as f64 + 0.5) / ALONG as f64 - 0.5) * length,
-        up: 0.0,
-        area: TAU * radius * length / ALONG as f64,
-    })
-}
-
 /// The ends of a cylinder, in rings of equal area.
-fn ends(radius: f64, length: f64) -> impl Iterator<Item = Ring> {
-    [-1.0, 1.0].into_iter().flat_map(move |up| {
+fn ends(radius: f64, length: f64) -> Vec<Ring> {
+    let end = |up: f64| {
         (0..ENDS).map(move |at| Ring {
             off: radius * ((at as f64 + 0.5) / ENDS as f64).sqrt(),
             height: up * length / 2.0,
             up,
             area: PI * radius * radius / ENDS as f64,
         })
-    })
+    };
+    [-1.0, 1.0].into_iter().flat_map(end).collect()
 }
 
 /// Two half balls so far apart, in rings of equal height, which have equal areas (Archimedes).
@@ -116,7 +113,16 @@ mod tests {
             Shape::Box { sides: [0.1, 0.2, 0.4] },
         ] {
             let places = places(&shape);
-            let area: f64 = places.iter().map(|(_, area)| area).sum();
+            // A ring of radius r and width h has the area 2 π r h, and of its flux r in each place.
+            let (side, round) = side(&shape).iter().fold((0.0, 0.0), |(area, flux), (_, ring)| {
+                let radius = if let Shape::Cylinder { radius, .. } | Shape::Capsule { radius, .. } = shape {
+                    radius
+                } else {
+                    0.0
+                };
+                (area + TAU * ring, flux + TAU * ring * radius)
+            });
+            let area = side + places.iter().map(|(_, area)| area).sum::<f64>();
             assert!((area / shape.area() - 1.0).abs() < 1e-12, "{shape:?}: {area}");
             for axis in 0..3 {
                 let sum: f64 = places.iter().map(|(spot, area)| spot.normal[axis] * area).sum();
@@ -124,7 +130,8 @@ mod tests {
             }
             // Gauss: the integral of position · normal is three times the volume.
             let flux = |spot: &Spot| (0..3).map(|i| spot.normal[i] * spot.position[i]).sum::<f64>();
-            let volume = places.iter().map(|(spot, area)| flux(spot) * area).sum::<f64>() / 3.0;
+            let volume = places.iter().map(|(spot, area)| flux(spot) * area).sum::<f64>();
+            let volume = (volume + round) / 3.0;
             let right = match shape {
                 Shape::Cylinder { radius, length } => PI * radius * radius * length,
                 Shape::Capsule { radius, length } => PI * radius * radius * (length + 4.0 / 3.0 * radius),
