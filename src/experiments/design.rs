@@ -6,8 +6,9 @@ use toml::{Table, Value};
 /// `reproduce/search.toml`, the design of the search that the default comes from.
 pub const SEARCH: &str = include_str!("../../reproduce/search.toml");
 
-/// `reproduce/fluid.toml`, the design of its last part.
-pub const FLUID: &str = include_str!("../../reproduce/fluid.toml");
+/// `reproduce/fluid.toml` and `reproduce/fluid-wide.toml`, the designs of its last parts.
+pub const PARTS_IN_FLUID: [&str; 2] =
+    [include_str!("../../reproduce/fluid.toml"), include_str!("../../reproduce/fluid-wide.toml")];
 
 /// `reproduce/sensitivity.toml`, the design of the study of what the paper leaves open.
 pub const SENSITIVITY: &str = include_str!("../../reproduce/sensitivity.toml");

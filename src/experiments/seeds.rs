@@ -2,7 +2,7 @@
 
 use serde::Deserialize;
 
-use super::design::{FLUID, SEARCH, SENSITIVITY};
+use super::design::{PARTS_IN_FLUID, SEARCH, SENSITIVITY};
 
 /// The seed of a design; what else it has does not matter here.
 #[derive(Deserialize)]
@@ -19,12 +19,13 @@ pub fn is_held_out(seed: u64) -> bool {
     !used().contains(&seed) && !FORMER.contains(&seed)
 }
 
-/// The seeds of the search, of its last part and of the study.
-fn used() -> [u64; 3] {
-    [SEARCH, FLUID, SENSITIVITY].map(|design| {
+/// The seeds of the search, of its last parts and of the study.
+fn used() -> Vec<u64> {
+    let seed = |design: &str| {
         let Seeded { seed } = toml::from_str(design).expect("the repository's designs have a seed");
         seed
-    })
+    };
+    [SEARCH, SENSITIVITY].into_iter().chain(PARTS_IN_FLUID).map(seed).collect()
 }
 
 #[cfg(test)]

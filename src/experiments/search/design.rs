@@ -6,7 +6,7 @@ use rand::RngExt;
 use serde::{Deserialize, Serialize};
 use toml::Table;
 
-use super::super::design::{flat, merge};
+use super::super::design::{SEARCH, flat, merge};
 use super::super::draws::{Decides, Draws};
 use super::super::error::ExperimentError;
 use crate::analysis::published::{Claim, Experiment, claims};
@@ -21,7 +21,8 @@ pub struct Design {
     pub seed: u64,
     /// How many candidates are drawn at random.
     pub draws: Draws,
-    /// The terms of the score.
+    /// The terms of the score; without any, those of `reproduce/search.toml`, so that every part of the search has one score.
+    #[serde(default)]
     pub score: Vec<Term>,
     /// Rounds, in their order.
     pub round: Vec<Round>,
@@ -113,9 +114,13 @@ impl Design {
     /// If it is no design, or names what is not there.
     pub fn parse(text: &str, origin: &str) -> Result<Self, ExperimentError> {
         let wrong = |message: String| ExperimentError::design(origin, message);
-        let design: Self = toml::from_str(text).map_err(|error| wrong(error.to_string()))?;
-        if design.round.is_empty() || design.score.is_empty() {
-            return Err(wrong("needs a [[round]] and a [[score]] at least".to_owned()));
+        let read = |text: &str| toml::from_str::<Self>(text).map_err(|error| wrong(error.to_string()));
+        let mut design = read(text)?;
+        if design.score.is_empty() {
+            design.score = read(SEARCH)?.score;
+        }
+        if design.round.is_empty() {
+            return Err(wrong("needs a [[round]] at least".to_owned()));
         }
         if design.round.iter().any(|round| round.candidates == 0) {
             return Err(wrong("has a [[round]] with candidates = 0; let each try one at least".to_owned()));
@@ -200,7 +205,7 @@ impl Term {
 
 #[cfg(test)]
 mod tests {
-    use super::super::super::design::{FLUID, SEARCH};
+    use super::super::super::design::PARTS_IN_FLUID;
     use super::*;
 
     #[test]
@@ -212,12 +217,15 @@ mod tests {
     }
 
     #[test]
-    fn its_last_part_has_the_same_score() {
-        let (last, first) =
-            (Design::parse(FLUID, "fluid.toml").unwrap(), Design::parse(SEARCH, "search.toml").unwrap());
-        last.check(&last.all_candidates()).unwrap();
+    fn its_parts_in_a_fluid_have_its_score_and_seeds_of_their_own() {
         let terms = |design: &Design| format!("{:?}", design.score);
-        assert_eq!(terms(&last), terms(&first));
-        assert_ne!(last.seed, first.seed);
+        let first = Design::parse(SEARCH, "search.toml").unwrap();
+        let mut seeds = HashSet::from([first.seed]);
+        for part in PARTS_IN_FLUID {
+            let part = Design::parse(part, "a part in a fluid").unwrap();
+            part.check(&part.all_candidates()).unwrap();
+            assert_eq!(terms(&part), terms(&first));
+            assert!(seeds.insert(part.seed), "seed {}", part.seed);
+        }
     }
 }
