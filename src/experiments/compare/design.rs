@@ -6,6 +6,7 @@ use serde::Deserialize;
 use toml::Table;
 
 use super::super::compared::Compared;
+use super::super::design::ABLATION;
 use super::super::error::ExperimentError;
 use crate::analysis::published::claims;
 use crate::settings::Settings;
@@ -22,8 +23,8 @@ pub struct Design {
     pub seed: u64,
     /// What every configuration has instead of `reproduce/paper.toml`'s values: how much is simulated and drawn.
     pub settings: Table,
-    /// The claims.
-    #[serde(rename = "claim")]
+    /// The claims; without any, those of `reproduce/ablation.toml`.
+    #[serde(rename = "claim", default)]
     pub claims: Vec<Compared>,
     /// The configurations; all others are compared with the first.
     #[serde(rename = "configuration")]
@@ -47,9 +48,13 @@ impl Design {
     /// If it is no design, names a claim that is not there, or gives two configurations one name.
     pub fn parse(text: &str, origin: &str) -> Result<Self, ExperimentError> {
         let wrong = |message: String| ExperimentError::design(origin, message);
-        let design: Self = toml::from_str(text).map_err(|error| wrong(error.to_string()))?;
-        if design.configurations.len() < 2 || design.claims.is_empty() {
-            return Err(wrong("needs two of [[configuration]] and a [[claim]] at least".to_owned()));
+        let read = |text: &str| toml::from_str::<Self>(text).map_err(|error| wrong(error.to_string()));
+        let mut design = read(text)?;
+        if design.claims.is_empty() {
+            design.claims = read(ABLATION)?.claims;
+        }
+        if design.configurations.len() < 2 {
+            return Err(wrong("needs two of [[configuration]] at least".to_owned()));
         }
         let mut names = HashSet::new();
         if let Some(twice) = design.configurations.iter().find(|one| !names.insert(&one.name)) {
