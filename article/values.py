@@ -305,8 +305,24 @@ def search(published):
     most = max(claims["fluid"], key=lambda row: int(row["satisfied"]))
     says("the one that holds most lacks the number of parts alone", not held(most, "number-of-parts") and int(most["satisfied"]) == int(most["terms"]) - 1)
     more = [table(f"docs/shown/{name}/scores.csv") for name in ["second", "neighbours", "finalists", "crosses"]]
-    every = [row for rows in [*claims.values(), *more] for row in rows if row["resolved"] == "true"]
-    value("tree-and-parts", sum(held(row, "tree-accuracy", "number-of-parts") for row in every), "docs/shown/*/scores.csv")
+    wide = table("docs/shown/fluid-wide/scores.csv")
+    every = [row for rows in [*claims.values(), *more, wide] for row in rows if row["resolved"] == "true"]
+    both = [row for row in every if held(row, "tree-accuracy", "number-of-parts")]
+    value("tree-and-parts", len(both), "docs/shown/*/scores.csv")
+    screened, best = ([row for row in wide if row["round"] == number] for number in "12")
+    nearest = next(row for row in best if row in both)
+    says("one of the best has both with more bodies", sum(row in both for row in best) == 1)
+    source = "docs/shown/fluid-wide/scores.csv"
+    value("wide-screened", f"{len(screened):,}", source)
+    value("wide-tried", len(best), source)
+    value("nearest-held", nearest["satisfied"], source)
+    source = "docs/shown/fluid-wide/credits.csv"
+    credits = [row for row in table(source) if row["round"] == "2"]
+    nearest = {row["claim"]: row for row in credits if row["candidate"] == nearest["candidate"]}
+    value("nearest-tree", percent(nearest["tree-accuracy"]["value"]), source)
+    value("nearest-parts", f'{float(nearest["number-of-parts"]["value"]):.2f}', source)
+    lower = [row for row in credits if row["claim"] == "tree-high-dimensions"]
+    says("none of the best has the tree at each d from 9", all(row["verdict"] == "not reproduced" for row in lower))
 
 
 def multiverse(published):
