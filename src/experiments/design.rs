@@ -3,7 +3,7 @@
 
 use toml::{Table, Value};
 
-/// `reproduce/search.toml`, the design of the search that the default comes from.
+/// `reproduce/search.toml`, the design of the search for the default, with its score.
 pub const SEARCH: &str = include_str!("../../reproduce/search.toml");
 
 /// `reproduce/fluid.toml` and `reproduce/fluid-wide.toml`, the designs of its last parts.
