@@ -9,15 +9,12 @@ use bodyschema::internals::markdown::{row, rule};
 use bodyschema::internals::statistics::{Estimate, mean, wilson};
 use bodyschema::internals::{Posterior, consensus};
 use bodyschema::pipeline::{Body, feel, map_felt};
-use bodyschema::settings::Settings;
 use bodyschema::stages::body_map::MapOf;
 use bodyschema::stages::evaluate::{adjusted_rand_index, parts, score};
 use bodyschema::stages::schema::{Keep, Model, Schema, infer};
 
-use super::split_merge;
+use super::{no_fluid, split_merge};
 
-/// The default when this was first asked, so that what comes of it hangs on no later one.
-const NO_FLUID: &str = include_str!("../../reproduce/no-fluid.toml");
 /// Of the movements; nothing else has it.
 const SEED: u64 = 7_100_000;
 const BODIES: usize = 20;
@@ -64,7 +61,7 @@ struct Condition {
 
 /// Runs the study, writes its tables, and returns its section of the page.
 pub fn study(folder: &Path) -> Result<String, Box<dyn Error>> {
-    let mut settings = Settings::paper().with(NO_FLUID, "reproduce/no-fluid.toml")?;
+    let mut settings = no_fluid();
     (settings.schema, settings.experiment.seed, settings.map.of) = (split_merge(), SEED, MapOf::Distances);
     let mut conditions: Vec<Condition> = DIMENSIONS
         .map(|dimension| Condition {

@@ -23,6 +23,12 @@ fn split_merge() -> Schema {
     Settings::load_over(Some(Base::SPLIT_MERGE), None).expect("the repository's settings").schema
 }
 
+/// The default when this was first asked, so that what comes of it hangs on no later one.
+fn no_fluid() -> Settings {
+    let text = include_str!("../../reproduce/no-fluid.toml");
+    Settings::paper().with(text, "reproduce/no-fluid.toml").expect("the repository's settings")
+}
+
 fn main() -> Result<(), Box<dyn Error>> {
     let folder = std::env::args().nth(1).ok_or("usage: mixing FOLDER")?;
     let folder = Path::new(&folder);

@@ -9,7 +9,6 @@ use bodyschema::internals::log_sum;
 use bodyschema::internals::markdown::{row, rule};
 use bodyschema::numerics::rng::stream;
 use bodyschema::pipeline::{feel, map_felt};
-use bodyschema::settings::Settings;
 use bodyschema::stages::body_map::{BodyMap, MapOf};
 use bodyschema::stages::evaluate::{adjusted_rand_index, parts};
 use bodyschema::stages::mixture::{Gaussian, NormalInverseWishart, Points, Rounding, SufficientStatistics};
@@ -19,7 +18,7 @@ use serde::Deserialize;
 
 use super::edges::graph;
 use super::picture::{self, Line, Panel};
-use super::{split_merge, synthetic};
+use super::{no_fluid, split_merge, synthetic};
 
 /// Of the chains, the drawn body and the moving one; nothing else has it.
 const SEED: u64 = 7_500_000;
@@ -99,7 +98,7 @@ fn maps() -> Result<Vec<(&'static str, BodyMap)>, Box<dyn Error>> {
         })
         .collect();
     maps.push(("synthetic, d = 5", synthetic::body(5, 2.0, &mut stream(SEED, 1, "synthetic", 0)).map));
-    let mut settings = Settings::paper();
+    let mut settings = no_fluid();
     (settings.experiment.seed, settings.map.of) = (SEED, MapOf::Distances);
     let body = map_felt(&feel(&settings, 1, &|| ())?, &settings, 1, &[9])?.body;
     maps.push(("body that moves, d = 9", body.maps.ok_or("a body that moves has a map")?.in_dims(9)));

@@ -19,6 +19,7 @@ use crate::files::touch::read_touch;
 use crate::files::{prepare_folder, write_text};
 use crate::numerics::rng::stream;
 use crate::report::estimated::page;
+use crate::settings::Base;
 use crate::stages::co_motion::{MIN_SENSORS, is_signed};
 use crate::stages::schema::Draw;
 use crate::stages::tree::Truth;
@@ -80,7 +81,7 @@ struct Summary {
 impl Estimate {
     /// Runs the subcommand.
     pub fn run(self) -> Result<ExitCode> {
-        let settings = self.common.load(false)?;
+        let settings = self.common.load_over(Base::ESTIMATE)?;
         let (input, out, seed) = (&self.tactile, &self.out, settings.experiment.seed);
         let in_file = || input.display().to_string();
         let all = read_touch(input)?;

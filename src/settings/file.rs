@@ -30,6 +30,9 @@ impl Base {
     /// What goes with the split–merge sampler.
     pub const SPLIT_MERGE: Self =
         Self { text: include_str!("../../reproduce/split-merge.toml"), origin: "reproduce/split-merge.toml" };
+    /// What goes with an estimate from any sensors.
+    pub const ESTIMATE: Self =
+        Self { text: include_str!("../../reproduce/estimate.toml"), origin: "reproduce/estimate.toml" };
 }
 
 /// Maximum length of a settings file, in bytes: far above any, and far below what a device or a wrong file may have.
