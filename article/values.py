@@ -371,7 +371,7 @@ def multiverse(published):
 
 
 def ablation():
-    source = "docs/shown/ablation/comparison.csv"
+    source = "docs/shown/ablation-no-fluid/comparison.csv"
     changes = {row["configuration"]: row for row in table(source) if row["claim"] == "tree-accuracy"}
     for name, configuration in {"smallest": "parts of 2 sensors or more", "prior": "the code's own prior"}.items():
         row = changes[configuration]
