@@ -106,9 +106,9 @@ impl Page<'_> {
         lines.push("\n## Body by body\n".to_owned());
         let Some(longest) = longest(design) else { return lines.join("\n") };
         lines.push(format!(
-        "Of {} samples with noise {}: in how many of {} movements the tree over the estimated parts is right, and the mean \
-         adjusted Rand index.\n",
-        longest.samples, longest.noise, design.movements
+        "Of {} samples with noise {}: in how many movements the tree over the estimated parts is right, and the mean adjusted \
+         Rand index.\n",
+        longest.samples, longest.noise
     ));
         let header = ["body".to_owned(), "parts".to_owned()];
         lines.push(row(header.into_iter().chain(design.coordinations.iter().map(|p| format!("p = {p}")))));
@@ -143,7 +143,7 @@ fn about(design: &Design, rows: &[Row]) -> String {
         ),
     };
     format!(
-        "{} bodies, {} movements of each at each p, seed {}; {} chains of each mixture. {resolved} `reproduce/bodies.sh` makes \
+        "{} bodies; movements of each at each p: {}; seed {}; chains of each mixture: {}. {resolved} `reproduce/bodies.sh` makes \
          this page; each recording is a row of [recordings.csv](recordings.csv), each edge of [edges.csv](edges.csv). How it \
          works: `docs/co-motion.md`.",
         design.bodies.len(),
