@@ -170,9 +170,9 @@ def search(results):
     # The last round leaves no candidates, and one without a resolved candidate no winner.
     optional = ["next.toml", "best.toml"]
     there = [name for name in optional if (results / "search" / name).exists()]
-    copy([results / "search" / name for name in ["search.md", "scores.csv", "credits.csv", *there]], SHOWN / "fluid")
+    copy([results / "search" / name for name in ["search.md", "scores.csv", "credits.csv", *there]], SHOWN / "fluid-pairwise")
     for name in set(optional) - set(there):
-        (SHOWN / "fluid" / name).unlink(missing_ok=True)
+        (SHOWN / "fluid-pairwise" / name).unlink(missing_ok=True)
 
 
 def sensitivity(results):
