@@ -8,7 +8,7 @@ use bodyschema::files::body::{NamedBody, read_body};
 use bodyschema::internals::estimate;
 use bodyschema::numerics::partition::adjusted_rand_index;
 use bodyschema::numerics::rng::stream;
-use bodyschema::settings::Settings;
+use bodyschema::settings::{Base, Settings};
 use bodyschema::stages::noise::above_noise;
 use bodyschema::stages::sense::{Tactile, sense};
 use bodyschema::stages::simulate::simulate;
@@ -74,7 +74,7 @@ fn a_body_is_simulated_and_its_parts_are_named() {
 
 #[test]
 fn noise_costs_fewer_parts_if_it_counts_as_no_touch() {
-    let mut settings = Settings::paper();
+    let mut settings = Settings::load_over(Some(Base::ESTIMATE), None).unwrap();
     (settings.motion.coordination, settings.motion.epoch) = (0.5, 1000);
     (settings.physics.duration, settings.physics.step) = (1000.0, 0.005);
     let Settings { motion, physics, sense: tactile_sense, quantise, .. } = &settings;
