@@ -254,7 +254,7 @@ fn foreign_data_is_clustered_and_every_draw_can_be_kept() {
     let folder = tempfile::tempdir().unwrap();
     separated_clusters(folder.path());
     let shared = format!(
-        "--settings {}/reproduce/equations.toml --chains 20 --sweeps 400 --labels labels.csv --tree tree.csv",
+        "--settings {}/reproduce/equations.toml --seed 2718 --chains 20 --sweeps 400 --labels labels.csv --tree tree.csv",
         env!("CARGO_MANIFEST_DIR")
     );
     for model in ["dpgmm", "dpgmm-lj"] {
@@ -309,8 +309,8 @@ fn the_split_merge_sampler_gives_a_posterior_of_parts_and_edges() {
     let folder = tempfile::tempdir().unwrap();
     staircase(folder.path());
     let at = |name: &str| folder.path().join("out").join(name);
-    let command = "infer stairs.npy --sampler split-merge --settings one.toml --labels labels.csv --tree tree.csv \
-                   --out out";
+    let command = "infer stairs.npy --sampler split-merge --settings one.toml --seed 2718 --labels labels.csv \
+                   --tree tree.csv --out out";
     let told = succeed(folder.path(), command);
     assert!(told.contains("number of parts: 5 (100.0 %)") && told.contains("tree right"), "{told}");
     assert!(told.contains("└─ "), "a drawing of the tree: {told}");
