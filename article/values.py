@@ -191,7 +191,7 @@ def simple(rows, published):
     row, source = own["baseline-tree"]
     value("prim-interval", percents(row["low"], row["high"]), source)
     value("prim-n", f"{int(row['n']):,}", source)
-    take("parts-worst", "number-of-parts", shown=lambda number: f"{float(number):.1f}")
+    take("parts-worst", "number-of-parts", shown=lambda number: f"{float(number):.2f}")
     value("parts-worst-where", own["number-of-parts"][0]["found"].removeprefix("worst: "), own["number-of-parts"][1])
     take("ari-lowest", "ari-unknown-number", shown=lambda number: f"{float(number):.2f}")
     take("ari-p", "ari-over-coordination", shown=lambda number: f"{float(number):.2f}")
@@ -328,8 +328,9 @@ def search(published):
     source = "docs/shown/collapsed/exp1/claims.csv"
     rows = [row for row in table(source) if (row["id"], row["reading"], row["counting"]) == ("tree-accuracy", "equations", "all-draws")]
     value("collapsed-tree", percent(rows[0]["value"]), source)
-    more = [table(f"docs/shown/{name}/scores.csv") for name in ["second", "neighbours", "finalists", "crosses"]]
-    value("all-tried", f"{sum(map(len, [*claims.values(), *more])):,}", "docs/shown/*/scores.csv")
+    more = [table(f"docs/shown/{name}/scores.csv") for name in ["first", "second", "neighbours", "finalists", "crosses"]]
+    distinct = {row["settings"] for rows in [*claims.values(), *more] for row in rows}
+    value("all-tried", f"{len(distinct):,}", "docs/shown/*/scores.csv")
 
 
 def multiverse(published):
