@@ -287,33 +287,34 @@ def search(published):
     claims["wide-best"] = [row for row in claims["fluid-wide"] if row["round"] == "2"]
     claims["fluid-wide"] = [row for row in claims["fluid-wide"] if row["round"] == "1"]
     held = lambda row, *ids: set(ids) <= set(row["hold"].split())
-    screens = {"screened": "screen", "fluid-screened": "fluid-screen", "wide-screened": "fluid-wide"}
-    for name, part in screens.items():
+    for name, part in {"screened": "screen", "fluid-screened": "fluid-screen"}.items():
         source = f"docs/shown/{part}/scores.csv"
         resolved = [row for row in claims[part] if row["resolved"] == "true"]
         value(name, f"{len(claims[part]):,}", source)
-        if name != "wide-screened":
-            value(f"{name}-resolved", f"{len(resolved):,}", source)
-            value(f"{name}-tree", sum(held(row, "tree-accuracy") for row in resolved), source)
+        value(f"{name}-resolved", f"{len(resolved):,}", source)
+        value(f"{name}-tree", sum(held(row, "tree-accuracy") for row in resolved), source)
+    wide = "docs/shown/fluid-wide/scores.csv"
+    value("wide-screened", f'{len(claims["fluid-wide"]):,}', wide)
+    value("wide-tried", len(claims["wide-best"]), wide)
     says("all of the wide screen are resolved", all(row["resolved"] == "true" for row in claims["fluid-wide"]))
     for name, id in {"lost": "tree-random-movement", "best": "best-coordination"}.items():
         count = sum(held(row, id) for row in claims["fluid-screen"] if row["resolved"] == "true")
         value(f"fluid-screened-{name}", count, "docs/shown/fluid-screen/scores.csv")
-    tried = {"twenty": "twenty", "readings": "readings", "fluid": "fluid", "wide": "wide-best", "finalists": "fluid-finalists", "scales": "fluid-scales", "pairwise": "fluid-pairwise"}
-    for name, part in tried.items():
-        value(f"{name}-tried", len(claims[part]), f"docs/shown/{part.replace('wide-best', 'fluid-wide')}/scores.csv")
+    for part in ["twenty", "readings", "fluid", "fluid-finalists", "fluid-scales", "fluid-pairwise"]:
+        value(f"{part.removeprefix('fluid-')}-tried", len(claims[part]), f"docs/shown/{part}/scores.csv")
     rounds = tomllib.loads(read("reproduce/fluid-wide.toml"))["round"]
     for name, place in {"search": -2, "last": -1}.items():
         value(f"{name}-bodies", rounds[place]["settings"]["experiment"]["simulations"], "reproduce/fluid-wide.toml")
     first, winner = claims["readings"][0], claims["fluid-pairwise"][0]
-    credits = {}
+    credit = lambda source, row, id: next(r for r in table(source) if (r["candidate"], r["claim"]) == (row["candidate"], id))
     for name, part, row in [("first", "readings", first), ("winner", "fluid-pairwise", winner)]:
         source = f"docs/shown/{part}/credits.csv"
-        credits = {r["claim"]: r for r in table(source) if r["candidate"] == row["candidate"]}
-        value(f"{name}-tree", percent(credits["tree-accuracy"]["value"]), source)
+        value(f"{name}-tree", percent(credit(source, row, "tree-accuracy")["value"]), source)
         value(f"{name}-held", row["satisfied"], f"docs/shown/{part}/scores.csv")
-    value("winner-tree-interval", percents(credits["tree-accuracy"]["low"], credits["tree-accuracy"]["high"]), source)
-    value("winner-parts", f'{float(credits["number-of-parts"]["value"]):.1f}', source)
+    source = "docs/shown/fluid-pairwise/credits.csv"
+    tree = credit(source, winner, "tree-accuracy")
+    value("winner-tree-interval", percents(tree["low"], tree["high"]), source)
+    value("winner-parts", f'{float(credit(source, winner, "number-of-parts")["value"]):.1f}', source)
     value("scored", winner["terms"], "docs/shown/fluid-pairwise/scores.csv")
     whole = [row["candidate"] for row in claims["fluid-scales"] if row["satisfied"] == row["terms"]]
     value("whole", len(whole), "docs/shown/fluid-scales/scores.csv")

@@ -167,12 +167,13 @@ def experiment(folder, figures):
 
 
 def search(results):
+    shown = SHOWN / "fluid-pairwise"  # the part whose winner is the default
     # The last round leaves no candidates, and one without a resolved candidate no winner.
     optional = ["next.toml", "best.toml"]
     there = [name for name in optional if (results / "search" / name).exists()]
-    copy([results / "search" / name for name in ["search.md", "scores.csv", "credits.csv", *there]], SHOWN / "fluid-pairwise")
+    copy([results / "search" / name for name in ["search.md", "scores.csv", "credits.csv", *there]], shown)
     for name in set(optional) - set(there):
-        (SHOWN / "fluid-pairwise" / name).unlink(missing_ok=True)
+        (shown / name).unlink(missing_ok=True)
 
 
 def sensitivity(results):

@@ -124,7 +124,7 @@ fn results_agree_if_they_are_the_same_or_within_their_tolerance() {
 
     // The rate at p = 0.9: within its interval, and beyond any.
     let rate = committed_rate();
-    let near = format!("{}", rate.parse::<f64>().unwrap() - 0.01);
+    let near = (rate.parse::<f64>().unwrap() - 0.01).to_string();
     change(folder.path(), "figures/fig11b-tree.csv", &rate, &near);
     let (status, said) = compare(folder.path(), "exp2").unwrap();
     assert_eq!(status, Some(0), "{said}");
