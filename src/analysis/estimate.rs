@@ -2,7 +2,7 @@
 
 use rand::Rng;
 
-use crate::stages::co_motion::{CoMotion, RigidParts, co_motion, is_signed, rigid_parts, spread};
+use crate::stages::co_motion::{CoMotion, RigidParts, is_signed, rigid_parts, settle, spread};
 use crate::stages::distance::{Distances, information_metric};
 use crate::stages::quantise::{Quantise, quantise};
 use crate::stages::sense::Tactile;
@@ -11,11 +11,6 @@ use crate::stages::sense::Tactile;
 const MAX_SENSORS: usize = 800;
 /// Samples that distances are computed from, spread over all.
 const MAX_SAMPLES: usize = 20_000;
-
-/// The share of a sensor's squares that its part may leave so that the tree is learned from it, or so many times what it leaves of
-/// the sensor in the middle.
-const TRUSTED: f64 = 0.02;
-const TIMES_THE_MIDDLE: f64 = 3.0;
 
 /// What was found.
 #[derive(Debug)]
@@ -38,7 +33,7 @@ pub fn estimate(tactile: &Tactile, levels: &Quantise, rng: &mut impl Rng, tick: 
     tick();
     let parts = rigid_parts(tactile, &sensors, &distances);
     tick();
-    let tree = co_motion(tactile, &trusted(&parts), None, rng);
+    let (parts, tree) = settle(tactile, parts, rng);
     tick();
     Estimate { parts, tree, mapped: sensors, distances }
 }
@@ -48,20 +43,6 @@ pub fn distances(tactile: &Tactile, levels: &Quantise) -> (Vec<usize>, Distances
     let sensors: Vec<usize> = spread(tactile.sensors(), MAX_SENSORS).collect();
     let distances = information_metric(&quantise(&excerpt(tactile, &sensors), levels));
     (sensors, distances)
-}
-
-/// The part of each sensor that its part's motion explains. Others may be on another part, and would bring that one's motion.
-fn trusted(parts: &RigidParts) -> Vec<Option<usize>> {
-    let middle = |part: usize| {
-        let own = parts.labels.iter().zip(&parts.left).filter(|(label, _)| **label == part);
-        let mut left: Vec<f64> = own.map(|(_, left)| *left).collect();
-        left.sort_by(f64::total_cmp);
-        left[left.len() / 2]
-    };
-    let count = parts.labels.iter().max().map_or(0, |last| last + 1);
-    let most: Vec<f64> = (0..count).map(|part| f64::max(TRUSTED, TIMES_THE_MIDDLE * middle(part))).collect();
-    let known = |(&part, &left): (&usize, &f64)| (left <= most[part]).then_some(part);
-    parts.labels.iter().zip(&parts.left).map(known).collect()
 }
 
 /// Pressures of some sensors at some samples, made positive in the same order: each sensor's minus its smallest negative one.

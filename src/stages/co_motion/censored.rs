@@ -12,7 +12,7 @@
 //! Pressures that are also negative (of an incompressible medium behind a sensor, say) are roots with a sign; their principal
 //! components are w.
 
-use faer::Mat;
+use faer::{Mat, MatRef};
 use rayon::prelude::*;
 
 use super::regressions::{MAX_REGRESSORS, pairs};
@@ -132,6 +132,14 @@ impl Roots {
         Self::new(self.values, self.signed)
     }
 
+    /// Means over times: of the products of two sensors' roots, sensors × sensors, and of each sensor's roots.
+    pub fn moments(&self) -> (Mat<f64>, Vec<f64>) {
+        let share = 1.0 / self.times().max(1) as f64;
+        let mean = |sensor| self.values.col_as_slice(sensor).iter().sum::<f64>() * share;
+        let means = (0..self.sensors()).map(mean).collect();
+        (self.values.transpose() * &self.values * faer::Scale(share), means)
+    }
+
     /// Number of sensors.
     pub fn sensors(&self) -> usize {
         self.values.ncols()
@@ -214,17 +222,27 @@ impl Roots {
         (0..self.times()).flat_map(|t| (0..k).map(move |at| (t, at))).map(|at| motions[at]).collect()
     }
 
+    /// The best c of each sensor for w of a fit to any sensors at these times: sensors × k.
+    pub fn loadings(&self, fit: &Fit) -> Mat<f64> {
+        self.some_loadings(fit, 0, self.sensors(), pairs(fit.motions.as_ref()).as_ref())
+    }
+
+    /// The same of so many sensors from one on, with the [pairs] of w.
+    fn some_loadings(&self, fit: &Fit, first: usize, count: usize, of_motions: MatRef<'_, f64>) -> Mat<f64> {
+        let mut loadings = Mat::zeros(count, fit.components());
+        let mut turns = Turns::new(self.values.subcols(first, count), &self.felt);
+        (0..TURNS).for_each(|_| turns.load_all(loadings.as_mut(), fit.motions.as_ref(), of_motions));
+        loadings
+    }
+
     /// The share of each sensor's squares that c · w leaves with its best c, for w of a fit to any sensors at these times; 1 if it
     /// feels nothing.
     pub fn left(&self, fit: &Fit) -> Vec<f64> {
-        let motions = fit.motions.as_ref();
-        let of_motions = pairs(motions);
+        let of_motions = pairs(fit.motions.as_ref());
         let firsts: Vec<usize> = (0..self.sensors()).step_by(SENSORS).collect();
         let left = |sensor: usize| {
             let count = SENSORS.min(self.sensors() - sensor);
-            let mut loadings = Mat::zeros(count, fit.components());
-            let mut turns = Turns::new(self.values.subcols(sensor, count), &self.felt);
-            (0..TURNS).for_each(|_| turns.load_all(loadings.as_mut(), motions, of_motions.as_ref()));
+            let loadings = self.some_loadings(fit, sensor, count, of_motions.as_ref());
             let reaches = &fit.motions * loadings.transpose();
             let share = |at: usize| {
                 let roots = self.values.col_as_slice(sensor + at);

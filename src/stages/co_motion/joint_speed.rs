@@ -1,6 +1,6 @@
 //! Compare what parts feel of their joints: quadratic forms of their motions that are the same at all times.
 
-use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use super::motion::Motion;
@@ -9,6 +9,8 @@ use super::motion::Motion;
 const REST: f64 = 1e-3;
 /// What is added to the variances of products, as a share of their mean: forms of hardly any variance are noise.
 const RIDGE: f64 = 1e-5;
+/// Turns in which forms are made positive, and explain each other.
+const ROUNDS: usize = 6;
 
 /// Sums over times of the products of all quadratic monomials of all motions, by blocks of times.
 #[derive(Debug, Clone)]
@@ -30,21 +32,17 @@ impl Moments {
             starts.push(starts[starts.len() - 1] + k * (k + 1) / 2);
         }
         let all = starts[motions.len()];
-        let energy =
-            |t: usize| -> f64 { motions.iter().flat_map(|motion| motion.at(t)).map(|w| w * w).sum() };
-        let energies: Vec<f64> = (0..samples).into_par_iter().map(energy).collect();
-        let mean = energies.iter().sum::<f64>() / samples.max(1) as f64;
+        let scales = scales(motions, samples);
         let block = |at: usize| {
             let times = at * samples / blocks..(at + 1) * samples / blocks;
             let mut monomials = DMatrix::zeros(times.len(), all);
             for (row, t) in times.enumerate() {
-                let scale = 1.0 / (mean * (energies[t] + REST * mean)).sqrt();
                 let mut column = 0;
                 for motion in motions {
                     let w = motion.at(t);
                     for i in 0..w.len() {
                         for j in i..w.len() {
-                            monomials[(row, column)] = scale * w[i] * w[j];
+                            monomials[(row, column)] = scales[t] * w[i] * w[j];
                             column += 1;
                         }
                     }
@@ -52,7 +50,8 @@ impl Moments {
             }
             monomials.transpose() * &monomials
         };
-        let blocks = if mean > 0.0 { (0..blocks).into_par_iter().map(block).collect() } else { Vec::new() };
+        let moves = scales.iter().any(|scale| *scale > 0.0);
+        let blocks = if moves { (0..blocks).into_par_iter().map(block).collect() } else { Vec::new() };
         Self { starts, blocks }
     }
 
@@ -77,6 +76,117 @@ impl Moments {
     }
 }
 
+/// What monomials are divided by, inverted: the root of the whole body's Σ |w|² at each time, times its mean; 0 if nothing moves.
+pub fn scales(motions: &[Motion], samples: usize) -> Vec<f64> {
+    let energy = |t: usize| -> f64 { motions.iter().flat_map(|motion| motion.at(t)).map(|w| w * w).sum() };
+    let energies: Vec<f64> = (0..samples).into_par_iter().map(energy).collect();
+    let mean = energies.iter().sum::<f64>() / samples.max(1) as f64;
+    let scale = |energy: f64| if mean > 0.0 { 1.0 / (mean * (energy + REST * mean)).sqrt() } else { 0.0 };
+    energies.into_iter().map(scale).collect()
+}
+
+/// The quadratic forms of one part's motion.
+pub struct Forms {
+    /// Which two numbers of the motion each monomial is the product of, the second not before the first.
+    pairs: Vec<(usize, usize)>,
+    /// The size of each number of the motion.
+    scales: Vec<f64>,
+    /// Sums over times of the products of two monomials, with a ridge.
+    moments: DMatrix<f64>,
+    /// The lower factor of the moments.
+    factor: DMatrix<f64>,
+}
+
+impl Forms {
+    /// From the moments of these monomials; `None` if the part feels nothing.
+    pub fn new(pairs: Vec<(usize, usize)>, mut moments: DMatrix<f64>) -> Option<Self> {
+        let n = moments.nrows();
+        if n == 0 {
+            return None;
+        }
+        let numbers = pairs.iter().map(|pair| pair.1 + 1).max().unwrap_or(0);
+        let mut scales = vec![0.0; numbers];
+        for (at, (i, j)) in pairs.iter().enumerate().filter(|(_, (i, j))| i == j) {
+            debug_assert_eq!(i, j);
+            scales[*i] = moments[(at, at)].max(0.0).sqrt().sqrt();
+        }
+        let ridge = RIDGE * moments.trace() / n as f64;
+        (0..n).for_each(|at| moments[(at, at)] += ridge);
+        let factor = moments.clone().cholesky()?.unpack();
+        Some(Self { pairs, scales, moments, factor })
+    }
+
+    /// The nearest form that is nowhere negative, as a square of a speed is.
+    fn positive(&self, form: &DVector<f64>) -> DVector<f64> {
+        let n = self.scales.len();
+        let mut matrix = DMatrix::zeros(n, n);
+        for (&(i, j), coefficient) in self.pairs.iter().zip(form.iter()) {
+            let share = if i == j { *coefficient } else { 0.5 * coefficient };
+            matrix[(i, j)] = share * self.scales[i] * self.scales[j];
+            matrix[(j, i)] = matrix[(i, j)];
+        }
+        let mut eigen = matrix.symmetric_eigen();
+        eigen.eigenvalues.apply(|value| *value = value.max(0.0));
+        let matrix = eigen.recompose();
+        let coefficient = |(i, j): (usize, usize)| {
+            let scale = self.scales[i] * self.scales[j];
+            let twice = if i == j { 1.0 } else { 2.0 };
+            if scale > 0.0 { twice * matrix[(i, j)] / scale } else { 0.0 }
+        };
+        DVector::from_iterator(form.len(), self.pairs.iter().copied().map(coefficient))
+    }
+
+    /// The root of the sum of squares of a form over times.
+    fn length(&self, form: &DVector<f64>) -> f64 {
+        (form.transpose() * &self.moments * form)[(0, 0)].max(0.0).sqrt()
+    }
+
+    /// The form that explains most of what these products say.
+    fn explain(&self, products: &DVector<f64>) -> DVector<f64> {
+        let half = self.factor.solve_lower_triangular(products).expect("a factor is regular");
+        self.factor.tr_solve_lower_triangular(&half).expect("a factor is regular")
+    }
+
+    /// Whether a form is rather negative than positive.
+    fn is_negative(&self, form: &DVector<f64>) -> bool {
+        let own = self.pairs.iter().zip(form.iter()).filter(|((i, j), _)| i == j);
+        own.map(|((i, _), coefficient)| coefficient * self.scales[*i].powi(2)).sum::<f64>() < 0.0
+    }
+}
+
+/// The largest cosine between a form of one part and one of another, both nowhere negative; 0 where a part feels nothing.
+pub fn agreement(first: &Option<Forms>, second: &Option<Forms>, both: &DMatrix<f64>) -> f64 {
+    let (Some(first), Some(second)) = (first, second) else { return 0.0 };
+    let half = first.factor.solve_lower_triangular(both).expect("a factor is regular");
+    let whole = second.factor.solve_lower_triangular(&half.transpose()).expect("a factor is regular");
+    let svd = whole.svd(true, true);
+    let (Some(u), Some(v)) = (&svd.u, &svd.v_t) else { return 0.0 };
+    let at = svd.singular_values.imax();
+    let mut b =
+        second.factor.tr_solve_lower_triangular(&u.column(at).into_owned()).expect("a factor is regular");
+    let mut a = first.factor.tr_solve_lower_triangular(&v.row(at).transpose()).expect("a factor is regular");
+    if first.is_negative(&a) {
+        (a, b) = (-a, -b);
+    }
+    let mut best = 0.0;
+    for _ in 0..ROUNDS {
+        let (own, other) = (first.positive(&a), second.positive(&b));
+        let lengths = first.length(&own) * second.length(&other);
+        if lengths <= 0.0 {
+            break;
+        }
+        let products = both * &other;
+        best = f64::max(best, own.dot(&products) / lengths);
+        (a, b) = (first.explain(&products), second.explain(&both.tr_mul(&own)));
+    }
+    best.clamp(0.0, 1.0)
+}
+
+/// The monomials of k numbers.
+pub fn monomials(k: usize) -> Vec<(usize, usize)> {
+    (0..k).flat_map(|i| (i..k).map(move |j| (i, j))).collect()
+}
+
 /// For each pair of parts, the largest cosine between a quadratic form of one's motion and one of the other's: their first
 /// canonical correlation (Hotelling 1936) without a constant, for a form is 0 at rest. 0 where a part feels nothing.
 ///
@@ -85,24 +195,14 @@ impl Moments {
 pub fn correlations(moments: &DMatrix<f64>, starts: &[usize]) -> DMatrix<f64> {
     let parts = starts.len() - 1;
     let length = |part: usize| starts[part + 1] - starts[part];
-    let factors: Vec<Option<Cholesky<f64, Dyn>>> = (0..parts)
-        .map(|part| {
-            let n = length(part);
-            let own = moments.view((starts[part], starts[part]), (n, n));
-            let ridge = DVector::from_element(n, RIDGE * own.trace() / n.max(1) as f64);
-            (n > 0).then(|| (own + DMatrix::from_diagonal(&ridge)).cholesky()).flatten()
-        })
-        .collect();
-    let cosine = |a: usize, b: usize| {
-        let (Some(first), Some(second)) = (&factors[a], &factors[b]) else { return 0.0 };
-        let both = moments.view((starts[a], starts[b]), (length(a), length(b)));
-        let half = first.l().solve_lower_triangular(&both).expect("a factor is regular");
-        let whole = second.l().solve_lower_triangular(&half.transpose()).expect("a factor is regular");
-        whole.singular_values().max().clamp(0.0, 1.0)
-    };
+    let block =
+        |a: usize, b: usize| moments.view((starts[a], starts[b]), (length(a), length(b))).into_owned();
+    let numbers = |part: usize| (0..).find(|k| k * (k + 1) / 2 == length(part)).expect("whole");
+    let forms: Vec<_> =
+        (0..parts).map(|part| Forms::new(monomials(numbers(part)), block(part, part))).collect();
     let mut cosines = DMatrix::identity(parts, parts);
     for (a, b) in (0..parts).flat_map(|a| (a + 1..parts).map(move |b| (a, b))) {
-        cosines[(a, b)] = cosine(a, b);
+        cosines[(a, b)] = agreement(&forms[a], &forms[b], &block(a, b));
         cosines[(b, a)] = cosines[(a, b)];
     }
     cosines

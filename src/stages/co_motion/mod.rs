@@ -10,15 +10,19 @@
 //! asked for the two quadratic forms that agree best, and the tree of greatest agreement is the answer.
 
 mod censored;
+mod faces;
 mod joint_speed;
 mod motion;
+mod owners;
 mod regressions;
 mod rigid;
+mod settle;
 mod tree;
 mod turns;
 
 pub use self::censored::MAX_COMPONENTS;
 pub use self::joint_speed::{Moments, correlations};
-pub use self::motion::{Motion, is_signed, motion, spread};
+pub use self::motion::{Motion, is_signed, spread};
 pub use self::rigid::{MIN_SENSORS, RigidParts, rigid_parts};
+pub use self::settle::settle;
 pub use self::tree::{CoMotion, Pair, co_motion};

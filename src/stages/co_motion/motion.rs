@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use super::censored::{Fit, Roots};
+use super::faces::faces;
 use crate::stages::sense::Tactile;
 
 /// Sensors of a part that are read, spread over all: enough for six numbers.
@@ -13,6 +14,8 @@ const TIMES: usize = 2000;
 const ROUNDS: usize = 16;
 /// Share of what six numbers explain that fewer may leave unexplained.
 const NEGLIGIBLE: f64 = 0.01;
+/// Components from which on the sensors of a face say something of how a part turns. The end of a thin cylinder says one.
+pub const LEAST_COMPONENTS: usize = 3;
 
 /// What a part feels of its own motion.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,6 +30,13 @@ impl Motion {
     /// w at a time.
     pub fn at(&self, t: usize) -> &[f64] {
         &self.values[t * self.components..][..self.components]
+    }
+
+    /// Of this motion and another at the same times.
+    pub fn with(&self, other: &Self) -> Self {
+        let samples = self.values.len() / self.components.max(1);
+        let values = (0..samples).flat_map(|t| [self.at(t), other.at(t)].concat()).collect();
+        Self { components: self.components + other.components, values }
     }
 }
 
@@ -50,6 +60,26 @@ pub fn motion(series: &[&[f32]], components: Option<usize>, signed: bool) -> Mot
         values.copy_from_slice(&roots.motions(&fit));
     });
     Motion { components: k, values }
+}
+
+/// What a part feels of its own motion, from the series of all of its sensors: of its large faces together, and of each face that
+/// alone feels one or two numbers by itself, since few such sensors would hardly count among the rest.
+pub fn whole_motion(series: &[&[f32]], signed: bool) -> Motion {
+    let samples = series.first().map_or(0, |series| series.len());
+    let times: Vec<usize> = spread(samples, TIMES).collect();
+    let every: Vec<usize> = (0..series.len()).collect();
+    let faces = faces(&Roots::at(series, &times, signed), &every);
+    let largest = faces.iter().map(Vec::len).max().unwrap_or(0);
+    let of =
+        |face: &[usize]| motion(&face.iter().map(|&sensor| series[sensor]).collect::<Vec<_>>(), None, signed);
+    let by_itself = |face: &Vec<usize>| {
+        (face.len() < largest).then(|| of(face)).filter(|own| own.components < LEAST_COMPONENTS)
+    };
+    let alone: Vec<Option<Motion>> = faces.par_iter().map(by_itself).collect();
+    let rest = faces.iter().zip(&alone).filter(|(_, own)| own.is_none()).flat_map(|(face, _)| face);
+    let mut rest: Vec<usize> = rest.copied().collect();
+    rest.sort_unstable();
+    alone.iter().flatten().fold(of(&rest), |whole, own| whole.with(own))
 }
 
 /// Times that c is learned from, of those at which a sensor feels anything.

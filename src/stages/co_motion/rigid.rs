@@ -4,7 +4,8 @@
 //! too. Neighbours in the distances make small pieces, which nearly always are pieces of one part. Then, in turns, two sets of
 //! sensors become one where that [costs](Set::cost) least, and each sensor goes to the set whose motion leaves least of it. What
 //! comes of this hangs on the pieces, so there are several starts, and the sets that cost least are kept. A part that one
-//! motion does not explain at the times that tell most of it is looked at anew, by itself.
+//! motion does not explain at the times that tell most of it is looked at anew, by itself. At last, faces that share nothing with
+//! the rest of their set, such as the ends of cylinders, are made [loose sets](RigidParts::loose).
 
 use std::collections::BTreeMap;
 
@@ -13,7 +14,7 @@ use rayon::prelude::*;
 
 use self::set::{MAX_SENSORS, Set, set, union};
 use super::censored::Roots;
-use super::motion::{is_signed, spread};
+use super::motion::{LEAST_COMPONENTS, is_signed, spread};
 use crate::numerics::linkage;
 use crate::numerics::partition::named_by_appearance;
 use crate::stages::distance::Distances;
@@ -39,10 +40,6 @@ const NEAR: [usize; 2] = [6, 3];
 const MARGIN: f64 = 1.0;
 /// Roots beyond its components that a part must have at a time, on the mean. With fewer, any sensors fit.
 const SUPPORT: f64 = 1.0;
-/// Components that the motion of a small part must have: of one with less than half of the sensors that a part has in the
-/// middle. What feels fewer is no skin of a part, but a few sensors, such as those on the ends of cylinders, that feel alike
-/// on several parts.
-const LEAST_COMPONENTS: usize = 3;
 /// Most times that sensors go to the set that leaves least of them.
 const EXCHANGES: usize = 10;
 /// Most times that sets become one and sensors move.
@@ -57,6 +54,9 @@ pub struct RigidParts {
     pub left: Vec<f64>,
     /// The part whose motion leaves least of the others, and that share; `None` if there is no other part.
     pub next: Vec<Option<(usize, f64)>>,
+    /// The labels of sets that feel too little to be a part: they are on one of the others, but their own motion does not say
+    /// on which.
+    pub loose: Vec<usize>,
 }
 
 /// Finds the parts.
@@ -75,7 +75,8 @@ pub fn rigid_parts(tactile: &Tactile, sensors: &[usize], distances: &Distances) 
     let fine = Search { roots: body.roots(&every, &times[1]), distances };
     let sets = fine.sets(members(&labels), Vec::new());
     let sets = if labels == found { sets } else { fine.exchanged(sets, true) };
-    assigned(&sets, &Roots::at(&all, &times[1], signed).normalised())
+    let (parts, loose) = fine.separated(sets);
+    assigned(&parts, &loose, &Roots::at(&all, &times[1], signed).normalised())
 }
 
 /// What some sensors of a body feel.
@@ -119,7 +120,7 @@ impl Body<'_> {
             let count = (n / size).clamp(1, MAX_PIECES);
             let labels = linkage::clusters(n, |i, j| distances.get(i, j), Method::Average, count);
             let sets = coarse.sets(members(&labels), Vec::new());
-            let sets = coarse.exchanged(coarse.merged(sets, NEAR[0], 0.0), false);
+            let sets = coarse.exchanged(coarse.merged(sets, NEAR[0], 0.0, 0), false);
             let labels = labels_of(&coarse.settled(sets, usize::MAX));
             let sets = fine.settled(fine.sets(members(&labels), Vec::new()), NEAR[1]);
             (sets.iter().map(|set| set.cost).sum::<f64>(), labels_of(&sets))
@@ -188,7 +189,7 @@ impl Search<'_> {
     fn settled(&self, mut sets: Vec<Set>, near: usize) -> Vec<Set> {
         for _ in 0..CYCLES {
             let before = labels_of(&sets);
-            sets = self.exchanged(self.merged(sets, near, MARGIN), true);
+            sets = self.exchanged(self.merged(sets, near, MARGIN, 0), true);
             if labels_of(&sets) == before {
                 break;
             }
@@ -197,13 +198,17 @@ impl Search<'_> {
     }
 
     /// Makes one of two sets, of each and its `near` nearest, where that saves most, as long as it saves more than `margin`.
-    fn merged(&self, sets: Vec<Set>, near: usize, margin: f64) -> Vec<Set> {
+    /// The first `fixed` sets stay apart from each other.
+    fn merged(&self, sets: Vec<Set>, near: usize, margin: f64, fixed: usize) -> Vec<Set> {
         let mut name = sets.len();
         let mut sets: BTreeMap<usize, Set> = sets.into_iter().enumerate().collect();
         let mut tried: BTreeMap<(usize, usize), Set> = BTreeMap::new();
         while sets.len() > 1 {
-            let new: Vec<(usize, usize)> =
-                self.pairs(&sets, near).into_iter().filter(|pair| !tried.contains_key(pair)).collect();
+            let new: Vec<(usize, usize)> = self
+                .pairs(&sets, near)
+                .into_iter()
+                .filter(|pair| pair.1 >= fixed && !tried.contains_key(pair))
+                .collect();
             let made = new.into_par_iter().map(|(a, b)| ((a, b), union(&self.roots, &sets[&a], &sets[&b])));
             tried.extend(made.collect::<Vec<_>>());
             let saved = |(&(a, b), both): (&(usize, usize), &Set)| sets[&a].cost + sets[&b].cost - both.cost;
@@ -220,8 +225,12 @@ impl Search<'_> {
             let both = tried.remove(&pair).expect("it is the best of those tried");
             tried.retain(|(a, b), _| ![pair.0, pair.1].iter().any(|gone| a == gone || b == gone));
             sets.retain(|name, _| *name != pair.0 && *name != pair.1);
-            sets.insert(name, both);
-            name += 1;
+            if pair.0 < fixed {
+                sets.insert(pair.0, both);
+            } else {
+                sets.insert(name, both);
+                name += 1;
+            }
         }
         sets.into_values().collect()
     }
@@ -304,27 +313,34 @@ fn least(values: impl Iterator<Item = f64>) -> Option<(usize, f64)> {
     values.enumerate().reduce(|best, other| if other.1 < best.1 { other } else { best })
 }
 
-/// The part of all sensors, from those of some, by the motions of their parts.
-fn assigned(parts: &[Set], all: &Roots) -> RigidParts {
-    let left: Vec<Vec<f64>> = parts.par_iter().map(|part| all.left(&part.fit)).collect();
-    let ranked = |sensor: usize| {
-        let mut shares: Vec<(f64, usize)> =
-            left.iter().enumerate().map(|(part, left)| (left[sensor], part)).collect();
-        shares.sort_by(|a, b| a.0.total_cmp(&b.0));
-        (shares[0], shares.get(1).copied())
+/// The part, or loose set, of all sensors, from those of some, by the motions of these.
+fn assigned(parts: &[Set], loose: &[Set], all: &Roots) -> RigidParts {
+    let sets: Vec<&Set> = parts.iter().chain(loose).collect();
+    let left: Vec<Vec<f64>> = sets.par_iter().map(|set| all.left(&set.fit)).collect();
+    let best = |sensor: usize, sets: &mut dyn Iterator<Item = usize>| {
+        sets.map(|set| (set, left[set][sensor]))
+            .reduce(|best, other| if other.1 < best.1 { other } else { best })
     };
-    let ranked: Vec<_> = (0..all.sensors()).map(ranked).collect();
-    let found: Vec<usize> = ranked.iter().map(|(own, _)| own.1).collect();
+    let own: Vec<(usize, f64)> = (0..all.sensors())
+        .map(|sensor| best(sensor, &mut (0..sets.len())).expect("there are sets"))
+        .collect();
+    let found: Vec<usize> = own.iter().map(|(set, _)| *set).collect();
     let labels = named_by_appearance(&found);
     let names: BTreeMap<usize, usize> = found.iter().copied().zip(labels.iter().copied()).collect();
-    let next = |other: Option<(f64, usize)>| other.and_then(|(left, part)| Some((*names.get(&part)?, left)));
+    let next = |sensor: usize| {
+        let named = |set: &usize| *set != found[sensor] && names.contains_key(set);
+        let (set, left) = best(sensor, &mut (0..parts.len()).filter(named))?;
+        Some((names[&set], left))
+    };
     RigidParts {
-        left: ranked.iter().map(|(own, _)| own.0).collect(),
-        next: ranked.iter().map(|(_, other)| next(*other)).collect(),
+        left: own.into_iter().map(|(_, left)| left).collect(),
+        next: (0..all.sensors()).map(next).collect(),
+        loose: (parts.len()..sets.len()).filter_map(|set| names.get(&set).copied()).collect(),
         labels,
     }
 }
 
+mod separate;
 mod set;
 #[cfg(test)]
 mod tests;

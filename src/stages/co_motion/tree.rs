@@ -5,7 +5,7 @@ use rand::{Rng, RngExt};
 use rayon::prelude::*;
 
 use super::joint_speed::Moments;
-use super::motion::{Motion, is_signed, motion};
+use super::motion::{Motion, is_signed, motion, whole_motion};
 use crate::numerics::partition::sizes;
 use crate::stages::sense::Tactile;
 use crate::stages::tree::{Edge, prim};
@@ -70,9 +70,18 @@ pub fn co_motion(
         let own = tactile.series().zip(labels).filter(|(_, label)| **label == Some(part));
         own.map(|(series, _)| series).collect()
     };
-    let motions: Vec<Motion> = parts.iter().map(|&part| motion(&series(part), components, signed)).collect();
-    let blocks = (tactile.samples / BLOCK_SAMPLES).clamp(2, BLOCKS);
-    let moments = Moments::new(&motions, tactile.samples, blocks);
+    let own = |part: usize| match components {
+        None => whole_motion(&series(part), signed),
+        given => motion(&series(part), given, signed),
+    };
+    let motions: Vec<Motion> = parts.iter().map(|&part| own(part)).collect();
+    joined(&parts, &motions, tactile.samples, rng)
+}
+
+/// The tree over parts with these labels, rising, from their motions at the same times.
+pub fn joined(parts: &[usize], motions: &[Motion], samples: usize, rng: &mut impl Rng) -> CoMotion {
+    let blocks = (samples / BLOCK_SAMPLES).clamp(2, BLOCKS);
+    let moments = Moments::new(motions, samples, blocks);
     let agreement = moments.correlations(&moments.sum(&vec![1; moments.blocks()]));
     let tree = spanning(&agreement);
     let mut joined = DMatrix::<usize>::zeros(parts.len(), parts.len());
@@ -96,12 +105,12 @@ pub fn co_motion(
     CoMotion {
         pairs: pairs.map(pair).collect(),
         tree: tree.iter().map(|edge| Edge { child: parts[edge.child], parent: parts[edge.parent] }).collect(),
-        parts: parts.iter().zip(&motions).map(|(&part, motion)| (part, motion.components)).collect(),
+        parts: parts.iter().zip(motions).map(|(&part, motion)| (part, motion.components)).collect(),
     }
 }
 
 /// The tree of greatest agreement.
-fn spanning(agreement: &DMatrix<f64>) -> Vec<Edge> {
+pub fn spanning(agreement: &DMatrix<f64>) -> Vec<Edge> {
     let nodes: Vec<usize> = (0..agreement.nrows()).collect();
     prim(&nodes, |child, parent| -agreement[(child, parent)])
 }
