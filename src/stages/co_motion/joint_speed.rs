@@ -154,7 +154,11 @@ impl Forms {
     }
 }
 
-/// The largest cosine between a form of one part and one of another, both nowhere negative; 0 where a part feels nothing.
+/// The largest cosine between a quadratic form of one part's motion and one of another's, both nowhere negative, as the square of a
+/// speed is; 0 where a part feels nothing.
+///
+/// The start is their first canonical correlation (Hotelling 1936) without a constant, for a form is 0 at rest. Then each form is
+/// made positive, and explains the other, in turns, of which the best counts: a lower bound of the largest.
 pub fn agreement(first: &Option<Forms>, second: &Option<Forms>, both: &DMatrix<f64>) -> f64 {
     let (Some(first), Some(second)) = (first, second) else { return 0.0 };
     let half = first.factor.solve_lower_triangular(both).expect("a factor is regular");
@@ -187,8 +191,7 @@ pub fn monomials(k: usize) -> Vec<(usize, usize)> {
     (0..k).flat_map(|i| (i..k).map(move |j| (i, j))).collect()
 }
 
-/// For each pair of parts, the largest cosine between a quadratic form of one's motion and one of the other's: their first
-/// canonical correlation (Hotelling 1936) without a constant, for a form is 0 at rest. 0 where a part feels nothing.
+/// For each pair of parts, the [`agreement`].
 ///
 /// `moments` are sums of products of monomials, which begin for each part at `starts`. Out: parts × parts, 0 to 1,
 /// symmetric, 1 on the diagonal.
@@ -246,6 +249,30 @@ mod tests {
         let column = |part: usize, at: usize| motions[part].values.iter().skip(at).step_by(3).copied();
         let product = |a: usize, b: usize| column(0, a).zip(column(1, b)).map(|(x, y)| x * y).sum::<f64>();
         assert!((0..3).all(|a| (0..3).all(|b| product(a, b).abs() < 0.15 * 5000.0 / 3.0)));
+    }
+
+    #[test]
+    fn a_speed_is_not_the_difference_of_two_squares() {
+        // The first part lacks a number of its motion, and the second one has it instead: only with a minus do both agree.
+        let motions = motions(5000);
+        let numbers = |part: usize, at: &[usize]| -> Vec<Vec<f64>> {
+            at.iter().map(|at| motions[part].values.iter().skip(*at).step_by(3).copied().collect()).collect()
+        };
+        let together = |columns: Vec<Vec<f64>>| Motion {
+            components: columns.len(),
+            values: (0..5000)
+                .flat_map(|t| columns.iter().map(move |column| column[t]).collect::<Vec<_>>())
+                .collect(),
+        };
+        let lacks = together(numbers(0, &[1, 2]));
+        let has = together([numbers(1, &[0, 1, 2]), numbers(0, &[0])].concat());
+        let agreement = |a: Motion, b: Motion| {
+            let moments = Moments::new(&[a, b], 5000, 1);
+            moments.correlations(&moments.sum(&[1]))[(0, 1)]
+        };
+        let right = agreement(motions[0].clone(), motions[1].clone());
+        let wrong = agreement(lacks, has);
+        assert!(wrong < right - 0.02, "{wrong} {right}");
     }
 
     #[test]

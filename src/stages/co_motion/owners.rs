@@ -325,7 +325,8 @@ mod tests {
 
     #[test]
     fn what_no_joint_needs_is_on_no_part() {
-        let (parts, _) = row_of_three(4000);
+        let (parts, ends) = row_of_three(4000);
+        let parts: Vec<Motion> = parts.iter().zip(&ends).map(|(part, end)| part.with(end)).collect();
         let mut rng = stream(1, 1, "owners", 1);
         let other =
             Motion { components: 1, values: (0..4000).map(|_| rng.random_range(-1.0..1.0)).collect() };
