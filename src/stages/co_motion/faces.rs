@@ -16,6 +16,8 @@ const LINKED: f64 = 0.5;
 const SAME: f64 = 0.8;
 /// Correlation, and cosine, of the roots of two sets below which they are opposite: one rests while the other feels.
 const OPPOSITE: (f64, f64) = (-0.2, 0.1);
+/// Share of the mean square below which a variance is rounding.
+const ROUNDING: f64 = 1e-10;
 
 /// The faces that these sensors are on, each with those that are opposite to it. Each is rising, in the order of their first.
 pub fn faces(roots: &Roots, sensors: &[usize]) -> Vec<Vec<usize>> {
@@ -98,7 +100,12 @@ impl Likeness {
         let mean = |set: &[usize]| -> f64 { set.iter().map(|&sensor| self.means[sensor]).sum() };
         let (both, first, second) = (product(a, b), product(a, a), product(b, b));
         let (mean_a, mean_b) = (mean(a), mean(b));
-        let variances = (first - mean_a * mean_a) * (second - mean_b * mean_b);
+        // What is left of a constant is rounding.
+        let variance = |square: f64, mean: f64| {
+            let variance = square - mean * mean;
+            if variance > ROUNDING * square { variance } else { 0.0 }
+        };
+        let variances = variance(first, mean_a) * variance(second, mean_b);
         let ratio = |over: f64, under: f64| if under > 0.0 { over / under.sqrt() } else { 0.0 };
         (ratio(both - mean_a * mean_b, variances), ratio(both, first * second))
     }

@@ -106,8 +106,7 @@ impl Forms {
         }
         let numbers = pairs.iter().map(|pair| pair.1 + 1).max().unwrap_or(0);
         let mut scales = vec![0.0; numbers];
-        for (at, (i, j)) in pairs.iter().enumerate().filter(|(_, (i, j))| i == j) {
-            debug_assert_eq!(i, j);
+        for (at, (i, _)) in pairs.iter().enumerate().filter(|(_, (i, j))| i == j) {
             scales[*i] = moments[(at, at)].max(0.0).sqrt().sqrt();
         }
         let ridge = RIDGE * moments.trace() / n as f64;
@@ -116,7 +115,8 @@ impl Forms {
         Some(Self { pairs, scales, moments, factor })
     }
 
-    /// The nearest form that is nowhere negative, as a square of a speed is.
+    /// The nearest form that is nowhere negative, as a square of a speed is: nearest by its coefficients, with each number of the motion
+    /// in the unit of its size.
     fn positive(&self, form: &DVector<f64>) -> DVector<f64> {
         let n = self.scales.len();
         let mut matrix = DMatrix::zeros(n, n);

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::censored::{Fit, Roots};
+use super::censored::{Fit, MAX_COMPONENTS, Roots};
 use super::faces::faces;
 use crate::stages::sense::Tactile;
 
@@ -20,7 +20,7 @@ pub const LEAST_COMPONENTS: usize = 3;
 /// What a part feels of its own motion.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Motion {
-    /// k, at most [`MAX_COMPONENTS`](super::MAX_COMPONENTS); 0 if the part feels nothing.
+    /// k, at most [`MAX_COMPONENTS`](super::MAX_COMPONENTS) of one set of sensors; 0 if it feels nothing.
     pub components: usize,
     /// T × k, by time, in √Pa; along the principal axes of what the sensors feel.
     pub values: Vec<f64>,
@@ -34,7 +34,10 @@ impl Motion {
 
     /// Of this motion and another at the same times.
     pub fn with(&self, other: &Self) -> Self {
-        let samples = self.values.len() / self.components.max(1);
+        if self.components == 0 || other.components == 0 {
+            return if self.components == 0 { other.clone() } else { self.clone() };
+        }
+        let samples = self.values.len() / self.components;
         let values = (0..samples).flat_map(|t| [self.at(t), other.at(t)].concat()).collect();
         Self { components: self.components + other.components, values }
     }
@@ -63,7 +66,8 @@ pub fn motion(series: &[&[f32]], components: Option<usize>, signed: bool) -> Mot
 }
 
 /// What a part feels of its own motion, from the series of all of its sensors: of its large faces together, and of each face that
-/// alone feels one or two numbers by itself, since few such sensors would hardly count among the rest.
+/// alone feels one or two numbers by itself, since few such sensors would hardly count among the rest. Where that gives more than six
+/// numbers, faces share some, and all are taken together.
 pub fn whole_motion(series: &[&[f32]], signed: bool) -> Motion {
     let samples = series.first().map_or(0, |series| series.len());
     let times: Vec<usize> = spread(samples, TIMES).collect();
@@ -79,7 +83,8 @@ pub fn whole_motion(series: &[&[f32]], signed: bool) -> Motion {
     let rest = faces.iter().zip(&alone).filter(|(_, own)| own.is_none()).flat_map(|(face, _)| face);
     let mut rest: Vec<usize> = rest.copied().collect();
     rest.sort_unstable();
-    alone.iter().flatten().fold(of(&rest), |whole, own| whole.with(own))
+    let whole = alone.iter().flatten().fold(of(&rest), |whole, own| whole.with(own));
+    if whole.components > MAX_COMPONENTS { of(&every) } else { whole }
 }
 
 /// Times that c is learned from, of those at which a sensor feels anything.

@@ -1,5 +1,6 @@
 //! Find the tree over parts that were found, and by it the part of loose sets of sensors.
 
+use std::cmp::Reverse;
 use std::collections::BTreeMap;
 
 use rand::Rng;
@@ -22,6 +23,8 @@ const TRUSTED: f64 = 0.02;
 const TIMES_THE_MIDDLE: f64 = 3.0;
 /// Sensors from which on a part may feel fewer than [`LEAST_COMPONENTS`].
 const MANY: usize = 24;
+/// Loose sets whose part the joints are asked for, the largest: what is remembered of them grows with the square of their number.
+const MAX_SETS: usize = 40;
 
 /// The tree over the parts, once loose sets are on the part that they are on: the one that the joints tell, or else the one whose
 /// motion leaves least of them.
@@ -30,34 +33,33 @@ const MANY: usize = 24;
 pub fn settle(tactile: &Tactile, mut parts: RigidParts, rng: &mut impl Rng) -> (RigidParts, CoMotion) {
     let series: Vec<&[f32]> = tactile.series().collect();
     let times: Vec<usize> = spread(tactile.samples, TIMES).collect();
-    let body =
-        Body { roots: Roots::at(&series, &times, is_signed(tactile)), signed: is_signed(tactile), series };
+    let signed = is_signed(tactile);
+    let body = Body { roots: Roots::at(&series, &times, signed), signed, series };
     let (known, sets) = body.parts_and_sets(&mut parts);
-    let (names, mut motions): (Vec<usize>, Vec<Motion>) = known.into_iter().unzip();
+    let (sets, rest) = largest(sets);
+    let (mut names, mut motions): (Vec<usize>, Vec<Motion>) = known.into_iter().unzip();
     let of_sets = body.motions(sets.values());
     let members: Vec<&[usize]> = sets.values().map(Vec::as_slice).collect();
     let found = owners(&motions, &of_sets, &opposites(&body.roots, &members), tactile.samples);
-    let mut nodes: Vec<(usize, Motion)> = Vec::new();
-    for ((set, sensors), (owner, own)) in sets.into_iter().zip(found.into_iter().zip(of_sets)) {
-        if let Some(owner) = owner {
+    if names.is_empty() {
+        names.extend(sets.keys());
+        motions.extend(of_sets);
+    } else {
+        for (sensors, (owner, own)) in sets.values().zip(found.into_iter().zip(of_sets)) {
+            let Some(owner) = owner else {
+                leave(&mut parts, sensors, names[0]);
+                continue;
+            };
             motions[owner] = motions[owner].with(&own);
-            give(&mut parts, &sensors, names[owner]);
-        } else if sensors.iter().all(|&sensor| parts.next[sensor].is_some()) {
-            for sensor in sensors {
-                let (part, left) = parts.next[sensor].take().expect("it has a next part");
-                (parts.labels[sensor], parts.left[sensor]) = (part, left);
-            }
-        } else {
-            nodes.push((set, own));
+            give(&mut parts, sensors, names[owner]);
         }
     }
-    nodes.extend(names.into_iter().zip(motions));
+    rest.iter().for_each(|sensors| leave(&mut parts, sensors, names[0]));
     // Loose sets leave gaps in the labels.
     let labels = named_by_appearance(&parts.labels);
     let new: BTreeMap<usize, usize> = parts.labels.iter().copied().zip(labels.iter().copied()).collect();
-    let mut nodes: Vec<(usize, Motion)> =
-        nodes.into_iter().filter_map(|(name, own)| Some((*new.get(&name)?, own))).collect();
-    nodes.sort_by_key(|node| node.0);
+    let named = |(name, own): (usize, Motion)| Some((*new.get(&name)?, own));
+    let nodes: BTreeMap<usize, Motion> = names.into_iter().zip(motions).filter_map(named).collect();
     for next in &mut parts.next {
         *next = next.and_then(|(part, left)| Some((*new.get(&part)?, left)));
     }
@@ -65,6 +67,22 @@ pub fn settle(tactile: &Tactile, mut parts: RigidParts, rng: &mut impl Rng) -> (
     let (names, motions): (Vec<usize>, Vec<Motion>) = nodes.into_iter().unzip();
     let tree = joined(&names, &motions, tactile.samples, rng);
     (parts, tree)
+}
+
+/// The largest sets, and the sensors of the others.
+fn largest(sets: BTreeMap<usize, Vec<usize>>) -> (BTreeMap<usize, Vec<usize>>, Vec<Vec<usize>>) {
+    let mut order: Vec<(usize, Vec<usize>)> = sets.into_iter().collect();
+    order.sort_by_key(|(_, sensors)| Reverse(sensors.len()));
+    let rest = order.split_off(order.len().min(MAX_SETS));
+    (order.into_iter().collect(), rest.into_iter().map(|(_, sensors)| sensors).collect())
+}
+
+/// Makes each sensor the part's whose motion leaves least of it, or this part's if none is known.
+fn leave(parts: &mut RigidParts, sensors: &[usize], part: usize) {
+    for &sensor in sensors {
+        let left = parts.left[sensor];
+        (parts.labels[sensor], parts.left[sensor]) = parts.next[sensor].take().unwrap_or((part, left));
+    }
 }
 
 /// Makes sensors a part's.
@@ -116,7 +134,9 @@ impl Body<'_> {
             .map(|(at, _)| *at.0)
             .collect();
         let mut motions: BTreeMap<usize, Motion> = known.into_keys().zip(motions).collect();
-        if weak.len() < motions.len() {
+        // Most of the skin is not loose.
+        let count = parts.labels.iter().filter(|label| weak.contains(label)).count();
+        if 2 * count < parts.labels.len() {
             let mut name = parts.labels.iter().max().map_or(0, |last| last + 1);
             for part in weak {
                 motions.remove(&part);
@@ -148,4 +168,57 @@ fn trusted(parts: &RigidParts) -> Vec<bool> {
     let count = parts.labels.iter().max().map_or(0, |last| last + 1);
     let most: Vec<f64> = (0..count).map(|part| f64::max(TRUSTED, TIMES_THE_MIDDLE * middle(part))).collect();
     parts.labels.iter().zip(&parts.left).map(|(part, left)| *left <= most[*part]).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::RngExt;
+
+    use super::*;
+    use crate::numerics::rng::stream;
+
+    /// Two parts of sensors that feel four numbers of their own, and more single sensors than the joints are asked for.
+    fn many_singles() -> (Tactile, RigidParts) {
+        let (samples, singles) = (400, MAX_SETS + 5);
+        let mut rng = stream(1, 1, "settle", 0);
+        let mut uniform =
+            |count: usize| -> Vec<f64> { (0..count).map(|_| rng.random_range(-1.0..1.0)).collect() };
+        let mut pressures = Vec::new();
+        for _ in 0..2 {
+            let w = uniform(4 * samples);
+            for c in uniform(4 * 30).chunks(4) {
+                let reach = |w: &[f64]| w.iter().zip(c).map(|(w, c)| w * c).sum::<f64>();
+                pressures.extend(w.chunks(4).map(|w| reach(w).max(0.0).powi(2) as f32));
+            }
+        }
+        pressures.extend(uniform(singles * samples).into_iter().map(|value| value.max(0.0) as f32));
+        let labels: Vec<usize> = (0..60).map(|at| at / 30).chain(2..2 + singles).collect();
+        let next = |at: usize| (at % 2 == 0).then_some((1, 0.5));
+        let parts = RigidParts {
+            left: vec![0.0; labels.len()],
+            next: (0..labels.len()).map(next).collect(),
+            loose: (2..2 + singles).collect(),
+            labels,
+        };
+        (Tactile { samples, pressures }, parts)
+    }
+
+    #[test]
+    fn every_sensor_is_on_a_part_of_the_tree() {
+        let (tactile, parts) = many_singles();
+        let (settled, tree) = settle(&tactile, parts.clone(), &mut stream(1, 1, "co-motion", 0));
+        assert_eq!(tree.parts.iter().map(|part| part.0).collect::<Vec<_>>(), [0, 1]);
+        assert!(settled.labels.iter().all(|label| *label < 2) && settled.loose.is_empty());
+        assert_eq!(settled.labels[..60], parts.labels[..60]);
+        assert!(settled.next.iter().flatten().all(|(part, left)| *part < 2 && left.is_finite()));
+    }
+
+    #[test]
+    fn loose_sets_alone_are_parts() {
+        let (tactile, mut parts) = many_singles();
+        parts.loose = (0..=*parts.labels.iter().max().unwrap()).collect();
+        let (settled, tree) = settle(&tactile, parts, &mut stream(1, 1, "co-motion", 0));
+        assert_eq!(tree.tree.len() + 1, tree.parts.len());
+        assert!(settled.labels.iter().all(|label| tree.parts.iter().any(|part| part.0 == *label)));
+    }
 }

@@ -24,6 +24,7 @@ type Group = (Vec<Vec<usize>>, f64);
 impl Search<'_> {
     /// Parts, and loose sets.
     pub fn separated(&self, sets: Vec<Set>) -> (Vec<Set>, Vec<Set>) {
+        let whole: Vec<Vec<usize>> = sets.iter().map(|set| set.sensors.clone()).collect();
         let (cores, pieces): (Vec<_>, Vec<_>) = sets.par_iter().map(|own| self.divided(own)).unzip();
         let cores: Vec<Vec<usize>> = cores.into_iter().filter(|core| !core.is_empty()).collect();
         let pieces: Vec<Vec<usize>> = pieces.into_iter().flatten().collect();
@@ -38,7 +39,7 @@ impl Search<'_> {
             self.sets(pieces, Vec::new()).into_iter().partition(|set| shares(set, SUPPORT));
         loose.extend(others);
         let sensors: Vec<usize> = loose.iter().flat_map(|set| set.sensors.iter().copied()).collect();
-        let mut loose = self.sets(alike(&self.roots, &sensors), loose);
+        let mut loose = self.sets(alike(&self.roots, &sorted(sensors)), loose);
         // Faces that say enough find their part, or become one, by what sets cost.
         let fixed = parts.len();
         parts.extend(faces);
@@ -48,7 +49,8 @@ impl Search<'_> {
             parts = found;
             loose.extend(others);
         }
-        if parts.is_empty() { (loose, parts) } else { (parts, loose) }
+        // Where nothing is left that could be a part, the sets stay as they were.
+        if parts.is_empty() { (self.sets(whole, Vec::new()), Vec::new()) } else { (parts, loose) }
     }
 
     /// What of a set is a part, and what comes off it.
