@@ -18,14 +18,19 @@ use super::{MARGIN, SUPPORT, Search, UNEXPLAINED};
 /// the end of a thin cylinder says of its turning, and less than two faces of a box.
 const SHARED: f64 = 0.05;
 
+/// What a mixture leaves of squares, over what the set in the middle leaves.
+const TIMES_THE_MIDDLE: f64 = 3.0;
+
 /// Some faces, and how many components of the motion of their set they say.
 type Group = (Vec<Vec<usize>>, f64);
 
 impl Search<'_> {
     /// Parts, and loose sets.
     pub fn separated(&self, sets: Vec<Set>) -> (Vec<Set>, Vec<Set>) {
+        let most = most_left(&sets);
+        let is_mixed = |set: &Set| is_mixed(set, most);
         let whole: Vec<Vec<usize>> = sets.iter().map(|set| set.sensors.clone()).collect();
-        let (cores, pieces): (Vec<_>, Vec<_>) = sets.par_iter().map(|own| self.divided(own)).unzip();
+        let (cores, pieces): (Vec<_>, Vec<_>) = sets.par_iter().map(|own| self.divided(own, most)).unzip();
         let cores: Vec<Vec<usize>> = cores.into_iter().filter(|core| !core.is_empty()).collect();
         let pieces: Vec<Vec<usize>> = pieces.into_iter().flatten().collect();
         let small = middle_of_sensors(cores.iter().chain(&pieces).map(Vec::len).collect()).div_ceil(2);
@@ -54,15 +59,15 @@ impl Search<'_> {
     }
 
     /// What of a set is a part, and what comes off it.
-    fn divided(&self, own: &Set) -> (Vec<usize>, Vec<Vec<usize>>) {
+    fn divided(&self, own: &Set, most: f64) -> (Vec<usize>, Vec<Vec<usize>>) {
         let faces = faces(&self.roots, &own.sensors);
-        if !is_mixed(own) {
+        if !is_mixed(own, most) {
             return self.core(own, faces);
         }
         let pure = |face: Vec<usize>| {
             let own = set(&self.roots, face.clone());
             let alike = alike(&self.roots, &face);
-            if is_mixed(&own) {
+            if is_mixed(&own, most) {
                 return alike;
             }
             self.groups(&own, alike).into_iter().map(|(group, _)| sorted(group.concat())).collect()
@@ -127,9 +132,19 @@ impl Search<'_> {
     }
 }
 
+/// The share of squares that a set may leave if it is no mixture: with noise, more than without.
+fn most_left(sets: &[Set]) -> f64 {
+    let left = |set: &Set| set.fit.residual / set.fit.spare;
+    let mut shares: Vec<f64> = sets.iter().filter(|set| set.fit.spare > 0.0).map(left).collect();
+    shares.sort_by(f64::total_cmp);
+    shares
+        .get(shares.len() / 2)
+        .map_or(UNEXPLAINED, |middle| f64::max(UNEXPLAINED, TIMES_THE_MIDDLE * middle))
+}
+
 /// Whether one motion does not explain what a set feels.
-fn is_mixed(set: &Set) -> bool {
-    set.fit.residual > UNEXPLAINED * set.fit.spare
+fn is_mixed(set: &Set, most: f64) -> bool {
+    set.fit.residual > most * set.fit.spare
 }
 
 fn sorted(mut sensors: Vec<usize>) -> Vec<usize> {
