@@ -191,7 +191,7 @@ pub fn monomials(k: usize) -> Vec<(usize, usize)> {
     (0..k).flat_map(|i| (i..k).map(move |j| (i, j))).collect()
 }
 
-/// For each pair of parts, the [`agreement`].
+/// For each pair of parts, how well both know the same speed: the largest cosine between quadratic forms of their motions.
 ///
 /// `moments` are sums of products of monomials, which begin for each part at `starts`. Out: parts × parts, 0 to 1,
 /// symmetric, 1 on the diagonal.

@@ -193,7 +193,7 @@ mod tests {
         }
         pressures.extend(uniform(singles * samples).into_iter().map(|value| value.max(0.0) as f32));
         let labels: Vec<usize> = (0..60).map(|at| at / 30).chain(2..2 + singles).collect();
-        let next = |at: usize| (at % 2 == 0).then_some((1, 0.5));
+        let next = |at: usize| at.is_multiple_of(2).then_some((1, 0.5));
         let parts = RigidParts {
             left: vec![0.0; labels.len()],
             next: (0..labels.len()).map(next).collect(),
