@@ -6,7 +6,7 @@
 //!
 //! A joint belongs to both of its parts, so that both know its speed: |v + ω × l|, from the velocity v, the rate ω and the
 //! place l of the joint in the frame of either. It is the same number, however the joint is bent, and in each frame its
-//! square is a quadratic form of what the part [feels of its motion](motion()). So [each pair of parts](correlations) is
+//! square is a quadratic form of what the part [feels of its motion](Motion). So [each pair of parts](correlations) is
 //! asked for the two quadratic forms that agree best, and the tree of greatest agreement is the answer.
 
 mod censored;
