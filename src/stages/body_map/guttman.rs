@@ -1,157 +1,241 @@
 //! Move all points of a body map by the Guttman transform, the step of metric majorisation (Borg & Groenen 2005, chapter 8).
 //!
-//! Each pair of points is computed once, for both: the pairs of two blocks of points make a tile.
+//! Each pair of points is computed once, for both: the pairs of two blocks of points make a [tile]. What the pairs of a tile do to
+//! the points of its first block is summed up with coordinates side by side, and to those of its second with points side by side,
+//! so that no tile has to be transposed; the points are kept in both orders.
+
+mod tile;
 
 use std::array::from_fn;
 
 use rayon::prelude::*;
 
+use self::tile::{BLOCK, COORDINATES, Lanes, Tile, compare, pull_first, pull_second};
 use super::coordinates::BodyMap;
 use crate::numerics::simd::vectorised;
 use crate::stages::distance::Distances;
 
-/// Points of a block.
-const BLOCK: usize = 8;
-/// What stands for a distance of 0 between two points of the map, in the unit of the distances.
-const COINCIDENT: f64 = 1e-5;
-/// Coordinates whose sums the registers hold.
-const COORDINATES: usize = 4;
-/// Shares of a step, each with sums of its own: threads may take one each.
-const SHARES: usize = 8;
+/// Share of the largest squared norm up to which squared distances are small.
+const CLOSE: f64 = 1e-4;
+/// Shares of a step, each with sums of its own: threads may take one each. With more, sums cost more than they save.
+const SHARES: usize = 4;
 
-/// A number for each point of a block.
-type Lanes = [f64; BLOCK];
-/// A number for each pair of two blocks: by rows, one for each point of the first.
-type Tile = [Lanes; BLOCK];
+/// Fewest blocks that a thread moves.
+const MIN_BLOCKS: usize = 32;
 
 /// A map on its way to less stress.
 #[derive(Debug)]
-pub struct Guttman<'a> {
-    distances: &'a Distances,
+pub struct Guttman {
     /// The distances of each block with itself and with all that follow, 0 where the last block has no point.
     tiles: Vec<Tile>,
-    dims: usize,
-    /// Rows of a block: d coordinates, rows of 0 up to a multiple of COORDINATES, and a last one of 1 for each point.
-    rows: usize,
-    /// ⌈n / BLOCK⌉ × rows. All numbers are 0 where the last block has no point.
-    points: Vec<Lanes>,
+    points: Points,
     /// What each share of a step sums up.
     shares: Vec<Sums>,
 }
 
-impl<'a> Guttman<'a> {
+impl Guttman {
     /// Begins at a map of as many points as the distances have, which must be finite and symmetric.
-    pub fn new(distances: &'a Distances, map: &BodyMap) -> Self {
-        let (dims, rows) = (map.dims, (map.dims + 1).next_multiple_of(COORDINATES));
-        let mut points = vec![[0.0; BLOCK]; distances.sensors.div_ceil(BLOCK) * rows];
-        for (i, coordinates) in map.coordinates.chunks_exact(dims).enumerate() {
-            let block = &mut points[i / BLOCK * rows..][..rows];
-            coordinates.iter().zip(&mut *block).for_each(|(x, row)| row[i % BLOCK] = *x);
-            block[rows - 1][i % BLOCK] = 1.0;
-        }
-        let shares = (0..SHARES).map(|_| Sums::zeros(points.len())).collect();
-        Self { distances, tiles: tiles(distances), dims, rows, points, shares }
+    pub fn new(distances: &Distances, map: &BodyMap) -> Self {
+        let points = Points::new(map);
+        let shares = (0..SHARES).map(|_| Sums::zeros(&points)).collect();
+        Self { tiles: tiles(distances), points, shares }
     }
 
     /// Moves every point by the Guttman transform; returns raw stress, the sum over pairs of (distance − distance within
     /// the map)², as it was before.
     pub fn step(&mut self) -> f64 {
-        let (tiles, points, rows) = (&self.tiles, &self.points, self.rows);
-        let (blocks, dims) = (points.len() / rows, self.dims);
+        let (tiles, points) = (&self.tiles, &self.points);
+        let blocks = points.blocks();
         self.shares.par_iter_mut().enumerate().for_each(|(share, sums)| {
             sums.clear();
-            // Later blocks have fewer tiles: every other turn is in the opposite order.
-            for turn in 0..blocks.div_ceil(SHARES) {
-                let block = turn * SHARES + if turn % 2 == 0 { share } else { SHARES - 1 - share };
+            for (turn, own) in sums.by_chunks.chunks_exact_mut(points.chunks).enumerate() {
+                let block = block(share, turn);
                 if block < blocks {
                     let tiles = &tiles[first_tile(block, blocks)..first_tile(block + 1, blocks)];
+                    let (by_rows, stress) = (&mut sums.by_rows, &mut sums.stress);
                     vectorised(
                         #[inline(always)]
-                        || sums.add_tiles(tiles, points, rows, dims, block),
+                        || add_tiles(own, by_rows, stress, tiles, points, block),
                     );
                 }
             }
         });
-        // In the order of the shares, so that the number of threads does not change a bit.
-        let (sums, shares) = self.shares.split_first_mut().expect("there is more than one");
-        shares.iter().for_each(|share| sums.add(share));
-        let n = self.distances.sensors as f64;
-        for (points, pulls) in self.points.chunks_exact_mut(rows).zip(sums.pulls.chunks_exact(rows)) {
-            let ratios = pulls[rows - 1];
-            for (x, pull) in points.iter_mut().zip(pulls).take(self.dims) {
-                for lane in 0..BLOCK {
-                    x[lane] = (ratios[lane] * x[lane] - pull[lane]) / n;
-                }
-            }
-        }
-        sums.stress
-    }
-
-    fn coordinate(&self, i: usize, k: usize) -> f64 {
-        self.points[i / BLOCK * self.rows + k][i % BLOCK]
+        self.points.move_by(&self.shares);
+        self.shares.iter().flat_map(|sums| &sums.stress).sum()
     }
 
     /// Σ ‖x_i‖.
     pub fn norms(&self) -> f64 {
-        let square = |i: usize| (0..self.dims).map(|k| self.coordinate(i, k).powi(2)).sum::<f64>();
-        (0..self.distances.sensors).map(|i| square(i).sqrt()).sum()
+        self.points.norms().map(|square| square.sqrt()).sum()
     }
 
     /// The map, in the unit of the distances.
     pub fn map(&self) -> BodyMap {
-        let points = 0..self.distances.sensors;
-        let coordinates = points.flat_map(|i| (0..self.dims).map(move |k| self.coordinate(i, k))).collect();
-        BodyMap { dims: self.dims, coordinates }
+        let dims = self.points.dims;
+        let places = (0..self.points.count).flat_map(|i| (0..dims).map(move |k| (i, k)));
+        BodyMap { dims, coordinates: places.map(|(i, k)| self.points.get(i, k)).collect() }
     }
 }
 
-/// Sums of the transform over some tiles.
+/// The points of a map. All numbers are 0 where the last block has no point.
+#[derive(Debug)]
+struct Points {
+    dims: usize,
+    count: usize,
+    /// Chunks of a block's points: of d coordinates, and 1.
+    chunks: usize,
+    /// Rows of a block: the same d coordinates and 1, then the squared norms, and 0 up to a multiple of COORDINATES.
+    rows: usize,
+    /// Squared distances up to this one are summed up from differences: what twice the product of two points leaves of their
+    /// squared norms would be rounding.
+    close: f64,
+    /// Blocks × chunks.
+    by_chunks: Vec<Tile>,
+    /// Blocks × rows.
+    by_rows: Vec<Lanes>,
+}
+
+impl Points {
+    fn new(map: &BodyMap) -> Self {
+        let (dims, count) = (map.dims, map.coordinates.len() / map.dims);
+        let (chunks, rows) = ((dims + 1).div_ceil(BLOCK), (dims + 2).next_multiple_of(COORDINATES));
+        let blocks = count.div_ceil(BLOCK);
+        let by_chunks = vec![[[0.0; BLOCK]; BLOCK]; blocks * chunks];
+        let mut points = Self {
+            dims,
+            count,
+            chunks,
+            rows,
+            close: 0.0,
+            by_chunks,
+            by_rows: vec![[0.0; BLOCK]; blocks * rows],
+        };
+        points.change(|block, rows| {
+            let points = map.coordinates[block * BLOCK * dims..].chunks_exact(dims).take(BLOCK);
+            for (i, coordinates) in points.enumerate() {
+                coordinates.iter().chain(&[1.0]).zip(&mut *rows).for_each(|(x, row)| row[i] = *x);
+            }
+        });
+        points
+    }
+
+    fn blocks(&self) -> usize {
+        self.count.div_ceil(BLOCK)
+    }
+
+    fn chunks_of(&self, block: usize) -> &[Tile] {
+        &self.by_chunks[block * self.chunks..][..self.chunks]
+    }
+
+    fn rows_of(&self, block: usize) -> &[Lanes] {
+        &self.by_rows[block * self.rows..][..self.rows]
+    }
+
+    /// The squared norms of all points, and 0 where the last block has no point.
+    fn norms(&self) -> impl Iterator<Item = &f64> {
+        self.by_rows.chunks_exact(self.rows).flat_map(|rows| &rows[self.dims + 1])
+    }
+
+    fn get(&self, i: usize, k: usize) -> f64 {
+        self.by_rows[i / BLOCK * self.rows + k][i % BLOCK]
+    }
+
+    /// Changes the rows of each block, and lays out the rest by them.
+    fn change(&mut self, change: impl Fn(usize, &mut [Lanes]) + Sync) {
+        let dims = self.dims;
+        let rows = self.by_rows.par_chunks_exact_mut(self.rows);
+        let blocks = rows.zip(self.by_chunks.par_chunks_exact_mut(self.chunks)).enumerate();
+        blocks.with_min_len(MIN_BLOCKS).for_each(|(block, (rows, chunks))| {
+            change(block, rows);
+            rows[dims + 1] = rows[..dims]
+                .iter()
+                .fold([0.0; BLOCK], |sum, row| from_fn(|i| row[i].mul_add(row[i], sum[i])));
+            for (chunk, rows) in chunks.iter_mut().zip(rows[..=dims].chunks(BLOCK)) {
+                for (k, row) in rows.iter().enumerate() {
+                    (0..BLOCK).for_each(|i| chunk[i][k] = row[i]);
+                }
+            }
+        });
+        self.close = CLOSE * self.norms().copied().fold(0.0, f64::max);
+    }
+
+    /// Moves every point to where the sums over all pairs pull it.
+    fn move_by(&mut self, shares: &[Sums]) {
+        let &mut Self { dims, count, chunks, rows, .. } = self;
+        self.change(|block, points| {
+            let (share, turn) = share_and_turn(block);
+            let by_chunks = &shares[share].by_chunks[turn * chunks..][..chunks];
+            // In the order of the shares, so that the number of threads does not change a bit.
+            let sum = |k: usize| {
+                shares.iter().fold(from_fn(|i| by_chunks[k / BLOCK][i][k % BLOCK]), |sum: Lanes, share| {
+                    let row = &share.by_rows[block * rows + k];
+                    from_fn(|i| sum[i] + row[i])
+                })
+            };
+            let ratios = sum(dims);
+            for (k, x) in points[..dims].iter_mut().enumerate() {
+                let pulls = sum(k);
+                *x = from_fn(|i| (ratios[i] * x[i] - pulls[i]) / count as f64);
+            }
+        });
+    }
+}
+
+/// The block that a share takes in a turn. Later blocks have fewer tiles: every other turn is in the opposite order.
+fn block(share: usize, turn: usize) -> usize {
+    turn * SHARES + if turn.is_multiple_of(2) { share } else { SHARES - 1 - share }
+}
+
+/// The share that takes a block, and its turn.
+fn share_and_turn(block: usize) -> (usize, usize) {
+    let (turn, place) = (block / SHARES, block % SHARES);
+    (if turn.is_multiple_of(2) { place } else { SHARES - 1 - place }, turn)
+}
+
+/// What a share of the blocks sums up over their pairs with themselves and with all blocks that follow.
 #[derive(Debug)]
 struct Sums {
-    /// Σ_j (D_ij / d_ij) x_jk of each point i, laid out as the points are; where they have 1, Σ_j D_ij / d_ij.
-    pulls: Vec<Lanes>,
-    /// Σ (D_ij − d_ij)² over pairs.
-    stress: f64,
+    /// Σ_j (D_ij / d_ij) x_jk of each point i of these blocks, laid out as the points are; where they have 1, Σ_j D_ij / d_ij.
+    by_chunks: Vec<Tile>,
+    /// The same of each point of all blocks, over the pairs with these blocks.
+    by_rows: Vec<Lanes>,
+    /// Σ (D_ij − d_ij)² over pairs, in shares.
+    stress: Lanes,
 }
 
 impl Sums {
-    fn zeros(length: usize) -> Self {
-        Self { pulls: vec![[0.0; BLOCK]; length], stress: 0.0 }
+    fn zeros(points: &Points) -> Self {
+        let by_chunks = vec![[[0.0; BLOCK]; BLOCK]; points.blocks().div_ceil(SHARES) * points.chunks];
+        Self { by_chunks, by_rows: vec![[0.0; BLOCK]; points.by_rows.len()], stress: [0.0; BLOCK] }
     }
 
     fn clear(&mut self) {
-        self.pulls.fill([0.0; BLOCK]);
-        self.stress = 0.0;
+        self.by_chunks.fill([[0.0; BLOCK]; BLOCK]);
+        self.by_rows.fill([0.0; BLOCK]);
+        self.stress = [0.0; BLOCK];
     }
+}
 
-    fn add(&mut self, other: &Self) {
-        for (sum, term) in self.pulls.iter_mut().zip(&other.pulls) {
-            sum.iter_mut().zip(term).for_each(|(sum, term)| *sum += term);
-        }
-        self.stress += other.stress;
-    }
-
-    /// Adds the pairs of one block with itself and with all that follow, whose distances `tiles` holds.
-    #[inline(always)]
-    fn add_tiles(&mut self, tiles: &[Tile], points: &[Lanes], rows: usize, dims: usize, block: usize) {
-        let first = &points[block * rows..][..rows];
-        for (offset, tile) in tiles.iter().enumerate() {
-            let second = &points[(block + offset) * rows..][..rows];
-            let (ratios, stress) = compare(tile, dims, first, second);
-            let mut transposed = [[0.0; BLOCK]; BLOCK];
-            for i in 0..BLOCK {
-                for j in 0..BLOCK {
-                    transposed[j][i] = ratios[i][j];
-                }
-            }
-            pull(&mut self.pulls[block * rows..][..rows], &transposed, second);
-            if offset == 0 {
-                // The tile has each pair twice.
-                self.stress += 0.5 * stress;
-            } else {
-                pull(&mut self.pulls[(block + offset) * rows..][..rows], &ratios, first);
-                self.stress += stress;
-            }
+/// Adds the pairs of one block with itself and with all that follow, whose distances `tiles` holds.
+#[inline(always)]
+fn add_tiles(
+    by_chunks: &mut [Tile],
+    by_rows: &mut [Lanes],
+    stress: &mut Lanes,
+    tiles: &[Tile],
+    points: &Points,
+    block: usize,
+) {
+    for (offset, tile) in tiles.iter().enumerate() {
+        let other = block + offset;
+        let (ratios, squares) =
+            compare(tile, points.dims, points.close, points.rows_of(block), points.rows_of(other));
+        pull_first(by_chunks, &ratios, points.chunks_of(other));
+        // The tile of a block with itself has each pair twice.
+        let share: f64 = if offset == 0 { 0.5 } else { 1.0 };
+        *stress = from_fn(|j| share.mul_add(squares[j], stress[j]));
+        if offset > 0 {
+            pull_second(&mut by_rows[other * points.rows..][..points.rows], &ratios, points.rows_of(block));
         }
     }
 }
@@ -170,58 +254,12 @@ fn first_tile(block: usize, blocks: usize) -> usize {
     block * (2 * blocks + 1 - block) / 2
 }
 
-/// D / d of all pairs of two blocks, and the sum of their (D − d)².
-#[inline(always)]
-fn compare(tile: &Tile, dims: usize, first: &[Lanes], second: &[Lanes]) -> (Tile, f64) {
-    /// Points of the first block whose sums the registers hold.
-    const POINTS: usize = 4;
-    let (real, others) = (first[first.len() - 1], second[second.len() - 1]);
-    let mut ratios = [[0.0; BLOCK]; BLOCK];
-    let mut squares = [0.0; BLOCK];
-    for top in (0..BLOCK).step_by(POINTS) {
-        let mut squared = [[0.0; BLOCK]; POINTS];
-        for (own, x) in first[..dims].iter().zip(&second[..dims]) {
-            // A copy, which the compiler knows not to overlap with anything.
-            let x = *x;
-            for (squared, own) in squared.iter_mut().zip(&own[top..top + POINTS]) {
-                for (squared, x) in squared.iter_mut().zip(&x) {
-                    *squared = (own - x).mul_add(own - x, *squared);
-                }
-            }
-        }
-        for (i, squared) in squared.iter().enumerate() {
-            for j in 0..BLOCK {
-                let (distance, within) = (tile[top + i][j], squared[j].sqrt());
-                let off = real[top + i] * others[j] * (distance - within);
-                squares[j] = off.mul_add(off, squares[j]);
-                ratios[top + i][j] = distance / if within > 0.0 { within } else { COINCIDENT };
-            }
-        }
-    }
-    (ratios, squares.iter().sum())
-}
-
-/// Adds Σ_i ratios[i][j] x_i to the sums of each point j, for all coordinates.
-#[inline(always)]
-fn pull(sums: &mut [Lanes], ratios: &Tile, points: &[Lanes]) {
-    let sums = sums.as_chunks_mut::<COORDINATES>().0;
-    for (sums, points) in sums.iter_mut().zip(points.as_chunks::<COORDINATES>().0) {
-        // On a copy, which the compiler knows not to overlap with anything.
-        let mut own = *sums;
-        for (i, ratios) in ratios.iter().enumerate() {
-            for k in 0..COORDINATES {
-                for j in 0..BLOCK {
-                    own[k][j] = ratios[j].mul_add(points[k][i], own[k][j]);
-                }
-            }
-        }
-        *sums = own;
-    }
-}
-
 #[cfg(test)]
 mod tests {
+    use rand::RngExt;
+
     use super::*;
+    use crate::numerics::rng::stream;
 
     #[test]
     fn points_that_coincide_on_the_map_do_not_move_each_other_to_infinity() {
@@ -232,5 +270,33 @@ mod tests {
             state.step();
         }
         assert!(state.map().coordinates.iter().all(|x| x.is_finite()));
+    }
+
+    #[test]
+    fn points_close_to_each_other_and_far_from_the_origin_move_as_precisely() {
+        let (n, dims) = (19, 3);
+        let mut rng = stream(1, 1, "close", 0);
+        // Differences of powers of two are exact.
+        let coordinates: Vec<f64> =
+            (0..n * dims).map(|_| 1024.0 + f64::from(rng.random_range(-64..64)) / 1024.0).collect();
+        let between = |i: usize, j: usize| if i == j { 0.0 } else { 1.0 + ((i + j) % 3) as f64 };
+        let values = (0..n * n).map(|at| between(at / n, at % n)).collect();
+        let distances = Distances { sensors: n, values };
+        let mut state = Guttman::new(&distances, &BodyMap { dims, coordinates: coordinates.clone() });
+        let stress = state.step();
+        let moved = state.map();
+        let x = |i: usize, k: usize| coordinates[i * dims + k];
+        let within = |i: usize, j: usize| (0..dims).map(|k| (x(i, k) - x(j, k)).powi(2)).sum::<f64>().sqrt();
+        let mut expected = 0.0;
+        for i in 0..n {
+            for k in 0..dims {
+                let pull = |j: usize| between(i, j) / within(i, j) * (x(i, k) - x(j, k));
+                let own = (0..n).filter(|j| *j != i).map(pull).sum::<f64>() / n as f64;
+                // Sums of 1,024 times the ratios, of some 100, are rounded.
+                assert!((moved.coordinates[i * dims + k] - own).abs() < 1e-9 * own.abs().max(1.0));
+            }
+            expected += (0..i).map(|j| (between(i, j) - within(i, j)).powi(2)).sum::<f64>();
+        }
+        assert!((stress - expected).abs() < 1e-12 * expected);
     }
 }
