@@ -10,7 +10,7 @@ use super::censored::Roots;
 use super::faces::{alike, opposites};
 use super::motion::{LEAST_COMPONENTS, Motion, is_signed, motion, spread};
 use super::owners::owners;
-use super::rigid::RigidParts;
+use super::rigid::{LEAST_OF_FACE, RigidParts};
 use super::tree::{CoMotion, joined};
 use crate::numerics::partition::named_by_appearance;
 use crate::stages::sense::Tactile;
@@ -124,8 +124,12 @@ impl Body<'_> {
             }
         }
         let motions = self.motions(known.values());
+        // The ends of two thin cylinders, say: the motion of each is one number.
         let is_weak = |(sensors, own): (&Vec<usize>, &Motion)| {
-            sensors.len() < MANY && own.components < LEAST_COMPONENTS
+            let faces = || self.motions(alike(&self.roots, sensors).iter());
+            sensors.len() < MANY
+                && own.components < LEAST_COMPONENTS
+                && faces().iter().all(|face| face.components < LEAST_OF_FACE)
         };
         let weak: Vec<usize> = known
             .iter()

@@ -21,6 +21,10 @@ const SHARED: f64 = 0.05;
 /// What a mixture leaves of squares, over what the set in the middle leaves.
 const TIMES_THE_MIDDLE: f64 = 3.0;
 
+/// Components of a face from which on it finds its part, or becomes one with others, by what sets cost: more than the end of a thin
+/// cylinder says.
+pub const LEAST_OF_FACE: usize = 2;
+
 /// Some faces, and how many components of the motion of their set they say.
 type Group = (Vec<Vec<usize>>, f64);
 
@@ -34,14 +38,16 @@ impl Search<'_> {
         let cores: Vec<Vec<usize>> = cores.into_iter().filter(|core| !core.is_empty()).collect();
         let pieces: Vec<Vec<usize>> = pieces.into_iter().flatten().collect();
         let small = middle_of_sensors(cores.iter().chain(&pieces).map(Vec::len).collect()).div_ceil(2);
-        let shares = |set: &Set, support: f64| {
-            set.fit.components() >= LEAST_COMPONENTS && set.fit.spare >= support && !is_mixed(set)
+        let says = |set: &Set, components: usize, support: f64| {
+            set.fit.components() >= components && set.fit.spare >= support && !is_mixed(set)
         };
-        let is_part = |set: &Set| set.sensors.len() >= small || shares(set, set.fit.components() as f64);
+        let is_part = |set: &Set| {
+            set.sensors.len() >= small || says(set, LEAST_COMPONENTS, set.fit.components() as f64)
+        };
         let (mut parts, mut loose): (Vec<Set>, Vec<Set>) =
             self.sets(cores, sets).into_iter().partition(is_part);
         let (faces, others): (Vec<Set>, Vec<Set>) =
-            self.sets(pieces, Vec::new()).into_iter().partition(|set| shares(set, SUPPORT));
+            self.sets(pieces, Vec::new()).into_iter().partition(|set| says(set, LEAST_OF_FACE, SUPPORT));
         loose.extend(others);
         let sensors: Vec<usize> = loose.iter().flat_map(|set| set.sensors.iter().copied()).collect();
         let mut loose = self.sets(alike(&self.roots, &sorted(sensors)), loose);
@@ -50,6 +56,9 @@ impl Search<'_> {
         parts.extend(faces);
         if parts.len() > fixed {
             let merged = self.merged(parts, usize::MAX, MARGIN, fixed);
+            // A set of two begins with as many components as the larger had, which may be more than both need.
+            let anew = |own: Set| if is_part(&own) { own } else { set(&self.roots, own.sensors) };
+            let merged: Vec<Set> = merged.into_par_iter().map(anew).collect();
             let (found, others): (Vec<Set>, Vec<Set>) = merged.into_iter().partition(is_part);
             parts = found;
             loose.extend(others);
