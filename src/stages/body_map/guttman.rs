@@ -17,7 +17,8 @@ use crate::stages::distance::Distances;
 
 /// Share of the largest squared norm up to which squared distances are small.
 const CLOSE: f64 = 1e-4;
-/// Shares of a step, each with sums of its own: threads may take one each. With more, sums cost more than they save.
+/// Shares of a step, each with sums of its own: threads may take one each. Eight took longer on two cores, and several random starts
+/// are on their way at the same time.
 const SHARES: usize = 4;
 
 /// Fewest blocks that a thread moves.
@@ -66,7 +67,7 @@ impl Guttman {
 
     /// Σ ‖x_i‖.
     pub fn norms(&self) -> f64 {
-        self.points.norms().map(|square| square.sqrt()).sum()
+        self.points.squared_norms().map(|square| square.sqrt()).sum()
     }
 
     /// The map, in the unit of the distances.
@@ -86,8 +87,7 @@ struct Points {
     chunks: usize,
     /// Rows of a block: the same d coordinates and 1, then the squared norms, and 0 up to a multiple of COORDINATES.
     rows: usize,
-    /// Squared distances up to this one are summed up from differences: what twice the product of two points leaves of their
-    /// squared norms would be rounding.
+    /// Squared distance up to which two points are close: see [`compare`].
     close: f64,
     /// Blocks × chunks.
     by_chunks: Vec<Tile>,
@@ -132,7 +132,7 @@ impl Points {
     }
 
     /// The squared norms of all points, and 0 where the last block has no point.
-    fn norms(&self) -> impl Iterator<Item = &f64> {
+    fn squared_norms(&self) -> impl Iterator<Item = &f64> {
         self.by_rows.chunks_exact(self.rows).flat_map(|rows| &rows[self.dims + 1])
     }
 
@@ -147,16 +147,15 @@ impl Points {
         let blocks = rows.zip(self.by_chunks.par_chunks_exact_mut(self.chunks)).enumerate();
         blocks.with_min_len(MIN_BLOCKS).for_each(|(block, (rows, chunks))| {
             change(block, rows);
-            rows[dims + 1] = rows[..dims]
-                .iter()
-                .fold([0.0; BLOCK], |sum, row| from_fn(|i| row[i].mul_add(row[i], sum[i])));
+            rows[dims + 1] =
+                rows[..dims].iter().fold([0.0; BLOCK], |sum, row| from_fn(|i| row[i] * row[i] + sum[i]));
             for (chunk, rows) in chunks.iter_mut().zip(rows[..=dims].chunks(BLOCK)) {
                 for (k, row) in rows.iter().enumerate() {
                     (0..BLOCK).for_each(|i| chunk[i][k] = row[i]);
                 }
             }
         });
-        self.close = CLOSE * self.norms().copied().fold(0.0, f64::max);
+        self.close = CLOSE * self.squared_norms().copied().fold(0.0, f64::max);
     }
 
     /// Moves every point to where the sums over all pairs pull it.

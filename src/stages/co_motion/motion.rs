@@ -16,6 +16,8 @@ const ROUNDS: usize = 16;
 const NEGLIGIBLE: f64 = 0.01;
 /// Components from which on the sensors of a face say something of how a part turns. The end of a thin cylinder says one.
 pub const LEAST_COMPONENTS: usize = 3;
+/// Components of a face from which on it may be told from others by what it feels: more than the end of a thin cylinder has.
+pub const LEAST_OF_FACE: usize = 2;
 
 /// What a part feels of its own motion.
 #[derive(Debug, Clone, PartialEq)]

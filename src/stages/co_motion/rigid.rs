@@ -12,7 +12,6 @@ use std::collections::BTreeMap;
 use kodama::Method;
 use rayon::prelude::*;
 
-pub use self::separate::LEAST_OF_FACE;
 use self::set::{MAX_SENSORS, Set, set, union};
 use super::censored::Roots;
 use super::motion::{LEAST_COMPONENTS, is_signed, spread};

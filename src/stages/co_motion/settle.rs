@@ -8,9 +8,9 @@ use rayon::prelude::*;
 
 use super::censored::Roots;
 use super::faces::{alike, opposites};
-use super::motion::{LEAST_COMPONENTS, Motion, is_signed, motion, spread};
+use super::motion::{LEAST_COMPONENTS, LEAST_OF_FACE, Motion, is_signed, motion, spread};
 use super::owners::owners;
-use super::rigid::{LEAST_OF_FACE, RigidParts};
+use super::rigid::RigidParts;
 use super::tree::{CoMotion, joined};
 use crate::numerics::partition::named_by_appearance;
 use crate::stages::sense::Tactile;
@@ -215,6 +215,34 @@ mod tests {
         assert!(settled.labels.iter().all(|label| *label < 2) && settled.loose.is_empty());
         assert_eq!(settled.labels[..60], parts.labels[..60]);
         assert!(settled.next.iter().flatten().all(|(part, left)| *part < 2 && left.is_finite()));
+    }
+
+    /// Two parts as above, and a third of two faces of eight sensors, each of which feels what `c` says of two numbers.
+    fn small_part(c: impl Fn(usize, f64) -> [f64; 2]) -> (Tactile, RigidParts) {
+        let (mut tactile, parts) = many_singles();
+        tactile.pressures.truncate(60 * tactile.samples);
+        let mut rng = stream(2, 1, "settle", 0);
+        let w: Vec<f64> = (0..2 * tactile.samples).map(|_| rng.random_range(-1.0..1.0)).collect();
+        for at in 0..16 {
+            let c = c(at / 8, f64::from(at as u32 % 8) / 7.0 - 0.5);
+            let reach = |w: &[f64]| w.iter().zip(c).map(|(w, c)| w * c).sum::<f64>();
+            tactile.pressures.extend(w.chunks(2).map(|w| reach(w).max(0.0).powi(2) as f32));
+        }
+        let labels: Vec<usize> = parts.labels[..60].iter().copied().chain([2; 16]).collect();
+        let (left, next) = (vec![0.0; labels.len()], vec![Some((0, 0.5)); labels.len()]);
+        (tactile, RigidParts { labels, left, next, loose: Vec::new() })
+    }
+
+    #[test]
+    fn a_small_part_stays_one_if_a_face_of_it_feels_how_it_turns() {
+        let parts = |(tactile, parts): (Tactile, RigidParts)| {
+            let (_, tree) = settle(&tactile, parts, &mut stream(1, 1, "co-motion", 0));
+            tree.parts.len()
+        };
+        // The upper and the lower side of a foot; and the ends of two thin cylinders, which have nothing to do with each other.
+        let sides = |face: usize, x: f64| if face == 0 { [1.0, x] } else { [-1.0, x] };
+        let ends = |face: usize, _| if face == 0 { [1.0, 0.0] } else { [0.0, 1.0] };
+        assert_eq!((parts(small_part(sides)), parts(small_part(ends))), (3, 2));
     }
 
     #[test]

@@ -54,7 +54,8 @@ fn no_step_raises_the_stress() {
 /// With numbers of points that fill the tiles and that do not.
 #[test]
 fn steps_that_compute_each_pair_once_are_those_of_majorisation() {
-    for (n, dims) in [(5, 2), (8, 3), (40, 3), (67, 9)] {
+    // Whole and partly filled blocks of 8 points, and of rows and chunks of coordinates; more blocks than one thread moves.
+    for (n, dims) in [(5, 2), (8, 3), (9, 1), (20, 6), (20, 7), (20, 8), (40, 3), (67, 9), (530, 2)] {
         let distances = city_block(n);
         let mut rng = stream(1, 1, "start", n);
         let start = BodyMap { dims, coordinates: (0..n * dims).map(|_| rng.random()).collect() };

@@ -10,7 +10,7 @@ use nalgebra::DMatrix;
 use rayon::prelude::*;
 
 use super::super::faces::{alike, connected, faces};
-use super::super::motion::LEAST_COMPONENTS;
+use super::super::motion::{LEAST_COMPONENTS, LEAST_OF_FACE};
 use super::set::{Set, set};
 use super::{MARGIN, SUPPORT, Search, UNEXPLAINED};
 
@@ -20,10 +20,6 @@ const SHARED: f64 = 0.05;
 
 /// What a mixture leaves of squares, over what the set in the middle leaves.
 const TIMES_THE_MIDDLE: f64 = 3.0;
-
-/// Components of a face from which on it finds its part, or becomes one with others, by what sets cost: more than the end of a thin
-/// cylinder says.
-pub const LEAST_OF_FACE: usize = 2;
 
 /// Some faces, and how many components of the motion of their set they say.
 type Group = (Vec<Vec<usize>>, f64);
@@ -56,7 +52,7 @@ impl Search<'_> {
         parts.extend(faces);
         if parts.len() > fixed {
             let merged = self.merged(parts, usize::MAX, MARGIN, fixed);
-            // A set of two begins with as many components as the larger had, which may be more than both need.
+            // A set of two begins with as many components as the one that had more, which may be more than both need.
             let anew = |own: Set| if is_part(&own) { own } else { set(&self.roots, own.sensors) };
             let merged: Vec<Set> = merged.into_par_iter().map(anew).collect();
             let (found, others): (Vec<Set>, Vec<Set>) = merged.into_iter().partition(is_part);
