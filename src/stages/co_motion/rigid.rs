@@ -32,6 +32,8 @@ const TIMES: [usize; 2] = [500, 2000];
 const CHOICE: usize = 4;
 /// The share of squares that a motion must leave, of roots beyond its components, so that a part may be several.
 const UNEXPLAINED: f64 = 0.05;
+/// What a sensor, or a set, may leave of its squares over what the one in the middle leaves.
+const TIMES_THE_MIDDLE: f64 = 3.0;
 /// Turns in which the motion of the body as a whole is found.
 const FEW_ROUNDS: usize = 3;
 /// Sets that a set is tried with, the nearest: of the many pieces, and of the few parts.
@@ -306,6 +308,12 @@ fn labels_of(sets: &[Set]) -> Vec<usize> {
         set.sensors.iter().for_each(|&sensor| labels[sensor] = at);
     }
     named_by_appearance(&labels)
+}
+
+/// The largest share that is like the others: so many times the one in the middle, or `least`, whichever is more.
+pub fn limit(mut shares: Vec<f64>, least: f64) -> f64 {
+    shares.sort_by(f64::total_cmp);
+    shares.get(shares.len() / 2).map_or(least, |middle| f64::max(least, TIMES_THE_MIDDLE * middle))
 }
 
 /// The first of the smallest numbers.

@@ -10,17 +10,15 @@ use super::censored::Roots;
 use super::faces::{alike, opposites};
 use super::motion::{LEAST_COMPONENTS, LEAST_OF_FACE, Motion, is_signed, motion, spread};
 use super::owners::owners;
-use super::rigid::RigidParts;
+use super::rigid::{RigidParts, limit};
 use super::tree::{CoMotion, joined};
 use crate::numerics::partition::named_by_appearance;
 use crate::stages::sense::Tactile;
 
 /// Times that likeness is read at, spread over all.
 const TIMES: usize = 2000;
-/// The share of a sensor's squares that its part may leave so that the tree is learned from it, or so many times what it leaves of
-/// the sensor in the middle.
+/// The share of a sensor's squares that its part may leave so that the tree is learned from it, if it leaves no more of others.
 const TRUSTED: f64 = 0.02;
-const TIMES_THE_MIDDLE: f64 = 3.0;
 /// Sensors from which on a part may feel fewer than [`LEAST_COMPONENTS`].
 const MANY: usize = 24;
 /// Loose sets whose part the joints are asked for, the largest: what is remembered of them grows with the square of their number.
@@ -126,10 +124,10 @@ impl Body<'_> {
         let motions = self.motions(known.values());
         // The ends of two thin cylinders, say: the motion of each is one number.
         let is_weak = |(sensors, own): (&Vec<usize>, &Motion)| {
-            let faces = || self.motions(alike(&self.roots, sensors).iter());
+            let is_end = |face: &Motion| face.components < LEAST_OF_FACE;
             sensors.len() < MANY
                 && own.components < LEAST_COMPONENTS
-                && faces().iter().all(|face| face.components < LEAST_OF_FACE)
+                && self.motions(alike(&self.roots, sensors).iter()).iter().all(is_end)
         };
         let weak: Vec<usize> = known
             .iter()
@@ -163,14 +161,12 @@ impl Body<'_> {
 
 /// Whether the motion of its set explains each sensor. Others may be on another part, and would bring that one's motion.
 fn trusted(parts: &RigidParts) -> Vec<bool> {
-    let middle = |part: usize| {
+    let most = |part: usize| {
         let own = parts.labels.iter().zip(&parts.left).filter(|(label, _)| **label == part);
-        let mut left: Vec<f64> = own.map(|(_, left)| *left).collect();
-        left.sort_by(f64::total_cmp);
-        left[left.len() / 2]
+        limit(own.map(|(_, left)| *left).collect(), TRUSTED)
     };
     let count = parts.labels.iter().max().map_or(0, |last| last + 1);
-    let most: Vec<f64> = (0..count).map(|part| f64::max(TRUSTED, TIMES_THE_MIDDLE * middle(part))).collect();
+    let most: Vec<f64> = (0..count).map(most).collect();
     parts.labels.iter().zip(&parts.left).map(|(part, left)| *left <= most[*part]).collect()
 }
 
@@ -181,6 +177,12 @@ mod tests {
     use super::*;
     use crate::numerics::rng::stream;
 
+    /// The pressures on a sensor that feels what c says of w, numbers by time.
+    fn felt<'a>(w: &'a [f64], c: &'a [f64]) -> impl Iterator<Item = f32> + 'a {
+        let reach = move |w: &[f64]| w.iter().zip(c).map(|(w, c)| w * c).sum::<f64>();
+        w.chunks(c.len()).map(move |w| reach(w).max(0.0).powi(2) as f32)
+    }
+
     /// Two parts of sensors that feel four numbers of their own, and more single sensors than the joints are asked for.
     fn many_singles() -> (Tactile, RigidParts) {
         let (samples, singles) = (400, MAX_SETS + 5);
@@ -190,10 +192,7 @@ mod tests {
         let mut pressures = Vec::new();
         for _ in 0..2 {
             let w = uniform(4 * samples);
-            for c in uniform(4 * 30).chunks(4) {
-                let reach = |w: &[f64]| w.iter().zip(c).map(|(w, c)| w * c).sum::<f64>();
-                pressures.extend(w.chunks(4).map(|w| reach(w).max(0.0).powi(2) as f32));
-            }
+            uniform(4 * 30).chunks(4).for_each(|c| pressures.extend(felt(&w, c)));
         }
         pressures.extend(uniform(singles * samples).into_iter().map(|value| value.max(0.0) as f32));
         let labels: Vec<usize> = (0..60).map(|at| at / 30).chain(2..2 + singles).collect();
@@ -225,8 +224,7 @@ mod tests {
         let w: Vec<f64> = (0..2 * tactile.samples).map(|_| rng.random_range(-1.0..1.0)).collect();
         for at in 0..16 {
             let c = c(at / 8, f64::from(at as u32 % 8) / 7.0 - 0.5);
-            let reach = |w: &[f64]| w.iter().zip(c).map(|(w, c)| w * c).sum::<f64>();
-            tactile.pressures.extend(w.chunks(2).map(|w| reach(w).max(0.0).powi(2) as f32));
+            tactile.pressures.extend(felt(&w, &c));
         }
         let labels: Vec<usize> = parts.labels[..60].iter().copied().chain([2; 16]).collect();
         let (left, next) = (vec![0.0; labels.len()], vec![Some((0, 0.5)); labels.len()]);

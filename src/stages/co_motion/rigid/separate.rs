@@ -12,14 +12,11 @@ use rayon::prelude::*;
 use super::super::faces::{alike, connected, faces};
 use super::super::motion::{LEAST_COMPONENTS, LEAST_OF_FACE};
 use super::set::{Set, set};
-use super::{MARGIN, SUPPORT, Search, UNEXPLAINED};
+use super::{MARGIN, SUPPORT, Search, UNEXPLAINED, limit};
 
 /// What two faces say of the same components of a motion, over what the lesser says of all, from which on they share some: more than
 /// the end of a thin cylinder says of its turning, and less than two faces of a box.
 const SHARED: f64 = 0.05;
-
-/// What a mixture leaves of squares, over what the set in the middle leaves.
-const TIMES_THE_MIDDLE: f64 = 3.0;
 
 /// Some faces, and how many components of the motion of their set they say.
 type Group = (Vec<Vec<usize>>, f64);
@@ -140,11 +137,7 @@ impl Search<'_> {
 /// The share of squares that a set may leave if it is no mixture: with noise, more than without.
 fn most_left(sets: &[Set]) -> f64 {
     let left = |set: &Set| set.fit.residual / set.fit.spare;
-    let mut shares: Vec<f64> = sets.iter().filter(|set| set.fit.spare > 0.0).map(left).collect();
-    shares.sort_by(f64::total_cmp);
-    shares
-        .get(shares.len() / 2)
-        .map_or(UNEXPLAINED, |middle| f64::max(UNEXPLAINED, TIMES_THE_MIDDLE * middle))
+    limit(sets.iter().filter(|set| set.fit.spare > 0.0).map(left).collect(), UNEXPLAINED)
 }
 
 /// Whether one motion does not explain what a set feels.
