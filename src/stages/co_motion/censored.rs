@@ -12,15 +12,14 @@
 //! Pressures that are also negative (of an incompressible medium behind a sensor, say) are roots with a sign; their principal
 //! components are w.
 
-use faer::{Mat, MatRef};
+use faer::Mat;
 use rayon::prelude::*;
 
-use super::regressions::{MAX_REGRESSORS, pairs};
 use super::turns::Turns;
 use crate::numerics::eigen::largest;
 
 /// Most numbers of a motion: velocity and rate of a rigid body.
-pub const MAX_COMPONENTS: usize = MAX_REGRESSORS;
+pub const MAX_COMPONENTS: usize = 6;
 /// Turns in which c is found from given w, or w from given c, each with the roots that the last one leaves wrong.
 const TURNS: usize = 4;
 /// Share of the strongest sensor's root at the same time from which on a sensor feels something; a weaker one only says
@@ -179,14 +178,14 @@ impl Roots {
         let rounds = if self.signed { 1 } else { rounds };
         let mut loadings = start.loadings.subcols(0, components).to_owned();
         let mut motions = start.motions.subcols(0, components).to_owned();
-        let mut turns = Turns::new(self.values.as_ref(), &self.felt);
+        let turns = Turns::new(self.values.as_ref(), &self.felt);
         for _ in 0..rounds {
-            turns.move_all(loadings.as_ref(), motions.as_mut());
-            turns.load_all(loadings.as_mut(), motions.as_ref(), pairs(motions.as_ref()).as_ref());
+            turns.move_all(loadings.as_ref(), &mut motions);
+            turns.load_all(loadings.as_mut(), &motions);
             orthonormalise(&mut loadings, &mut motions);
         }
-        turns.move_all(loadings.as_ref(), motions.as_mut());
-        let [residual, spare] = turns.residual_and_spare(loadings.as_ref(), motions.as_ref());
+        turns.move_all(loadings.as_ref(), &mut motions);
+        let [residual, spare] = turns.residual_and_spare(loadings.as_ref(), &motions);
         Fit { residual, spare, loadings, motions }
     }
 
@@ -217,32 +216,31 @@ impl Roots {
     pub fn motions(&self, fit: &Fit) -> Vec<f64> {
         let k = fit.components();
         let mut motions = Mat::zeros(self.times(), k);
-        let mut turns = Turns::new(self.values.as_ref(), &self.felt);
-        (0..TURNS).for_each(|_| turns.move_all(fit.loadings.as_ref(), motions.as_mut()));
+        let turns = Turns::new(self.values.as_ref(), &self.felt);
+        (0..TURNS).for_each(|_| turns.move_all(fit.loadings.as_ref(), &mut motions));
         (0..self.times()).flat_map(|t| (0..k).map(move |at| (t, at))).map(|at| motions[at]).collect()
     }
 
     /// The best c of each sensor for w of a fit to any sensors at these times: sensors × k.
     pub fn loadings(&self, fit: &Fit) -> Mat<f64> {
-        self.some_loadings(fit, 0, self.sensors(), pairs(fit.motions.as_ref()).as_ref())
+        self.some_loadings(fit, 0, self.sensors())
     }
 
-    /// The same of so many sensors from one on, with the [pairs] of w.
-    fn some_loadings(&self, fit: &Fit, first: usize, count: usize, of_motions: MatRef<'_, f64>) -> Mat<f64> {
+    /// The same of so many sensors from one on.
+    fn some_loadings(&self, fit: &Fit, first: usize, count: usize) -> Mat<f64> {
         let mut loadings = Mat::zeros(count, fit.components());
-        let mut turns = Turns::new(self.values.subcols(first, count), &self.felt);
-        (0..TURNS).for_each(|_| turns.load_all(loadings.as_mut(), fit.motions.as_ref(), of_motions));
+        let turns = Turns::new(self.values.subcols(first, count), &self.felt);
+        (0..TURNS).for_each(|_| turns.load_all(loadings.as_mut(), &fit.motions));
         loadings
     }
 
     /// The share of each sensor's squares that c · w leaves with its best c, for w of a fit to any sensors at these times; 1 if it
     /// feels nothing.
     pub fn left(&self, fit: &Fit) -> Vec<f64> {
-        let of_motions = pairs(fit.motions.as_ref());
         let firsts: Vec<usize> = (0..self.sensors()).step_by(SENSORS).collect();
         let left = |sensor: usize| {
             let count = SENSORS.min(self.sensors() - sensor);
-            let loadings = self.some_loadings(fit, sensor, count, of_motions.as_ref());
+            let loadings = self.some_loadings(fit, sensor, count);
             let reaches = &fit.motions * loadings.transpose();
             let share = |at: usize| {
                 let roots = self.values.col_as_slice(sensor + at);

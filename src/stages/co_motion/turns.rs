@@ -1,127 +1,298 @@
 //! The turns of a censored regression: find w from c, and c from w, by the roots that say something.
+//!
+//! What a root says goes straight into the sums of its regression, by vector instructions, so that nothing of times × sensors is
+//! written.
 
-use faer::linalg::matmul::matmul;
-use faer::{Accum, Mat, MatMut, MatRef, Par};
+use faer::{Mat, MatMut, MatRef};
+use pulp::{Arch, Simd, WithSimd};
 
-use super::regressions::{pairs, solve};
-use crate::numerics::simd::vectorised;
+use super::regressions::{LANES, Regressions};
 
-/// Times that are worked on at once, so that they stay near the processor.
-const BLOCK: usize = 256;
-
-/// Roots of some sensors, and room for what they say of a motion: times × sensors.
+/// Roots of some sensors: times × sensors.
 pub struct Turns<'a> {
-    /// All roots.
-    values: MatRef<'a, f64>,
-    /// At each time, that from which on a root is felt.
-    felt: &'a [f64],
-    /// c · w, at as many times as are worked on at once.
-    reach: Mat<f64>,
-    /// 1 where a root says something: it is felt, or should be. 0 elsewhere.
-    tells: Mat<f64>,
-    /// The roots that say something. 0 elsewhere.
-    told: Mat<f64>,
+    /// All roots, by sensor.
+    values: Vec<&'a [f64]>,
+    /// At each time, that from which on a root is felt; none is after the last time.
+    felt: Vec<f64>,
 }
 
 impl<'a> Turns<'a> {
     /// On roots, times × sensors, of which those that are no less than `felt` at their time are felt.
-    pub fn new(values: MatRef<'a, f64>, felt: &'a [f64]) -> Self {
-        let room = || Mat::zeros(BLOCK.min(values.nrows()), values.ncols());
-        Self { values, felt, reach: room(), tells: room(), told: room() }
+    pub fn new(values: MatRef<'a, f64>, felt: &[f64]) -> Self {
+        let column =
+            |sensor| values.col(sensor).try_as_col_major().expect("roots are kept by sensor").as_slice();
+        let padded = [felt, &[f64::INFINITY; LANES]].concat();
+        Self { values: (0..values.ncols()).map(column).collect(), felt: padded }
     }
 
     /// w at all times by least squares over the sensors that feel something, and those that should by w as it was.
     ///
     /// In: c, sensors × k. In and out: w, times × k.
-    pub fn move_all(&mut self, loadings: MatRef<'_, f64>, mut motions: MatMut<'_, f64>) {
-        let of_loadings = pairs(loadings);
-        let mut squares = Mat::zeros(BLOCK, of_loadings.ncols());
-        for (first, count) in blocks(self.values.nrows()) {
-            self.find(first, count, loadings, motions.as_ref());
-            let mut squares = squares.subrows_mut(0, count);
-            let mut found = motions.as_mut().subrows_mut(first, count);
-            product(squares.as_mut(), self.tells.subrows(0, count), of_loadings.as_ref(), Accum::Replace);
-            product(found.as_mut(), self.told.subrows(0, count), loadings, Accum::Replace);
-            solve(squares.as_ref(), found);
+    pub fn move_all(&self, loadings: MatRef<'_, f64>, motions: &mut Mat<f64>) {
+        let loadings = by_row(loadings);
+        match motions.ncols() {
+            0 => (),
+            1 => Arch::new().dispatch(Move::<1> { turns: self, loadings: &loadings, motions }),
+            2 => Arch::new().dispatch(Move::<2> { turns: self, loadings: &loadings, motions }),
+            3 => Arch::new().dispatch(Move::<3> { turns: self, loadings: &loadings, motions }),
+            4 => Arch::new().dispatch(Move::<4> { turns: self, loadings: &loadings, motions }),
+            5 => Arch::new().dispatch(Move::<5> { turns: self, loadings: &loadings, motions }),
+            _ => Arch::new().dispatch(Move::<6> { turns: self, loadings: &loadings, motions }),
         }
     }
 
     /// c of all sensors by least squares over the times at which each feels something, or should by c as it was.
     ///
-    /// In and out: c, sensors × k. In: w, times × k, and its [pairs].
-    pub fn load_all(
-        &mut self,
-        mut loadings: MatMut<'_, f64>,
-        motions: MatRef<'_, f64>,
-        of_motions: MatRef<'_, f64>,
-    ) {
-        let mut squares = Mat::zeros(loadings.nrows(), of_motions.ncols());
-        let mut products = Mat::zeros(loadings.nrows(), loadings.ncols());
-        for (first, count) in blocks(self.values.nrows()) {
-            self.find(first, count, loadings.as_ref(), motions);
-            let (tells, told) = (self.tells.subrows(0, count), self.told.subrows(0, count));
-            product(squares.as_mut(), tells.transpose(), of_motions.subrows(first, count), Accum::Add);
-            product(products.as_mut(), told.transpose(), motions.subrows(first, count), Accum::Add);
+    /// In and out: c, sensors × k. In: w, times × k.
+    pub fn load_all(&self, mut loadings: MatMut<'_, f64>, motions: &Mat<f64>) {
+        let mut rows = by_row(loadings.as_ref());
+        let k = motions.ncols();
+        match k {
+            0 => return,
+            1 => Arch::new().dispatch(Load::<1> { turns: self, loadings: &mut rows, motions }),
+            2 => Arch::new().dispatch(Load::<2> { turns: self, loadings: &mut rows, motions }),
+            3 => Arch::new().dispatch(Load::<3> { turns: self, loadings: &mut rows, motions }),
+            4 => Arch::new().dispatch(Load::<4> { turns: self, loadings: &mut rows, motions }),
+            5 => Arch::new().dispatch(Load::<5> { turns: self, loadings: &mut rows, motions }),
+            _ => Arch::new().dispatch(Load::<6> { turns: self, loadings: &mut rows, motions }),
         }
-        solve(squares.as_ref(), products.as_mut());
-        loadings.copy_from(&products);
+        for (sensor, row) in rows.chunks(k).enumerate() {
+            row.iter().enumerate().for_each(|(at, value)| loadings[(sensor, at)] = *value);
+        }
     }
 
     /// The squares that roots which say something leave, at each time on the mean, and how many such roots a time has beyond the
     /// k that w takes, on the mean.
-    pub fn residual_and_spare(&mut self, loadings: MatRef<'_, f64>, motions: MatRef<'_, f64>) -> [f64; 2] {
-        let mut sums = [0.0; 2];
-        for (first, count) in blocks(self.values.nrows()) {
-            self.find(first, count, loadings, motions);
-            let mut at_times = vec![[0.0; 2]; count];
-            for sensor in 0..loadings.nrows() {
-                let found = self.told.col_as_slice(sensor).iter().zip(self.tells.col_as_slice(sensor));
-                let found = found.zip(self.reach.col_as_slice(sensor));
-                for ([residual, telling], ((told, tells), reach)) in at_times.iter_mut().zip(found) {
-                    *residual += tells * (told - reach).powi(2);
-                    *telling += tells;
-                }
-            }
-            for [residual, telling] in at_times {
-                sums[0] += residual;
-                sums[1] += f64::max(0.0, telling - loadings.ncols() as f64);
-            }
-        }
-        sums.map(|sum| sum / self.values.nrows() as f64)
+    pub fn residual_and_spare(&self, loadings: MatRef<'_, f64>, motions: &Mat<f64>) -> [f64; 2] {
+        let work = Left { turns: self, loadings: &by_row(loadings), motions };
+        Arch::new().dispatch(work).map(|sum| sum / motions.nrows() as f64)
+    }
+
+    /// Roots of a sensor at times from `t` on, as many as a register holds.
+    #[inline(always)]
+    fn roots<S: Simd>(&self, simd: S, sensor: usize, t: usize) -> S::f64s {
+        load(simd, self.values[sensor], t)
     }
 
     /// What roots say at some times.
-    fn find(&mut self, first: usize, count: usize, loadings: MatRef<'_, f64>, motions: MatRef<'_, f64>) {
-        let reach = self.reach.subrows_mut(0, count);
-        product(reach, motions.subrows(first, count), loadings.transpose(), Accum::Replace);
-        let felt = &self.felt[first..first + count];
-        for sensor in 0..loadings.nrows() {
-            let own =
-                self.values.col(sensor).try_as_col_major().expect("roots are kept by sensor").as_slice();
-            let own = &own[first..first + count];
-            let reach = self.reach.col_as_slice(sensor);
-            let tells = self.tells.col_as_slice_mut(sensor);
-            let told = self.told.col_as_slice_mut(sensor);
-            vectorised(
-                #[inline(always)]
-                || {
-                    let found = tells.iter_mut().zip(told.iter_mut());
-                    for ((tells, told), ((root, felt), reach)) in found.zip(own.iter().zip(felt).zip(reach)) {
-                        *tells = if (root >= felt) | (reach > root) { 1.0 } else { 0.0 };
-                        *told = *tells * root;
-                    }
-                },
-            );
+    #[inline(always)]
+    fn find<S: Simd>(&self, simd: S, root: S::f64s, felt: S::f64s, reach: S::f64s) -> Said<S> {
+        let is_felt = simd.greater_than_or_equal_f64s(root, felt);
+        let should_be = simd.greater_than_f64s(reach, root);
+        let says = simd.or_m64s(is_felt, should_be);
+        let none = simd.splat_f64s(0.0);
+        Said {
+            tells: simd.select_f64s(says, simd.splat_f64s(1.0), none),
+            told: simd.select_f64s(says, root, none),
         }
     }
 }
 
-/// A product by one thread, so that its sums have one order.
-fn product(to: MatMut<'_, f64>, left: MatRef<'_, f64>, right: MatRef<'_, f64>, how: Accum) {
-    matmul(to, how, left, right, 1.0, Par::Seq);
+/// What roots say.
+struct Said<S: Simd> {
+    /// 1 where a root says something: it is felt, or should be. 0 elsewhere.
+    tells: S::f64s,
+    /// The roots that say something. 0 elsewhere.
+    told: S::f64s,
 }
 
-/// The first time and the number of times of each block.
-fn blocks(times: usize) -> impl Iterator<Item = (usize, usize)> {
-    (0..times).step_by(BLOCK).map(move |first| (first, BLOCK.min(times - first)))
+/// The sums of as many regressions on K numbers as a register holds.
+struct Sums<S: Simd, const K: usize> {
+    /// Of products of two regressors, the second not after the first.
+    squares: [[S::f64s; K]; K],
+    /// Of products of a regressor with what is explained.
+    products: [S::f64s; K],
+}
+
+impl<S: Simd, const K: usize> Sums<S, K> {
+    #[inline(always)]
+    fn new(simd: S) -> Self {
+        let none = simd.splat_f64s(0.0);
+        Self { squares: [[none; K]; K], products: [none; K] }
+    }
+
+    #[inline(always)]
+    fn add(&mut self, simd: S, regressors: &[S::f64s; K], said: &Said<S>) {
+        for a in 0..K {
+            let own = simd.mul_f64s(said.tells, regressors[a]);
+            self.products[a] = simd.mul_add_f64s(said.told, regressors[a], self.products[a]);
+            for b in 0..=a {
+                self.squares[a][b] = simd.mul_add_f64s(own, regressors[b], self.squares[a][b]);
+            }
+        }
+    }
+}
+
+/// [`Turns::move_all`] for k = K.
+struct Move<'a, const K: usize> {
+    turns: &'a Turns<'a>,
+    loadings: &'a [f64],
+    motions: &'a mut Mat<f64>,
+}
+
+impl<const K: usize> WithSimd for Move<'_, K> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Self { turns, loadings, motions } = self;
+        let times = motions.nrows();
+        for first in (0..times).step_by(LANES) {
+            let count = LANES.min(times - first);
+            let mut regressions = Regressions::<K>::new();
+            for at in (0..count).step_by(S::F64_LANES) {
+                let t = first + at;
+                let w = moved::<S, K>(simd, motions, t);
+                let felt = load(simd, &turns.felt, t);
+                let mut sums = Sums::<S, K>::new(simd);
+                for (sensor, c) in loadings.as_chunks::<K>().0.iter().enumerate() {
+                    let c = splat(simd, c);
+                    let root = turns.roots(simd, sensor, t);
+                    let said = turns.find(simd, root, felt, dot(simd, &c, &w));
+                    sums.add(simd, &c, &said);
+                }
+                for a in 0..K {
+                    store::<S>(&mut regressions.products[a], at, sums.products[a]);
+                    for b in 0..=a {
+                        store::<S>(&mut regressions.squares[a][b], at, sums.squares[a][b]);
+                    }
+                }
+            }
+            regressions.solve();
+            for (a, found) in regressions.products.iter().enumerate() {
+                motions.col_as_slice_mut(a)[first..first + count].copy_from_slice(&found[..count]);
+            }
+        }
+    }
+}
+
+/// [`Turns::load_all`] for k = K.
+struct Load<'a, const K: usize> {
+    turns: &'a Turns<'a>,
+    loadings: &'a mut [f64],
+    motions: &'a Mat<f64>,
+}
+
+impl<const K: usize> WithSimd for Load<'_, K> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Self { turns, loadings, motions } = self;
+        let rows = loadings.as_chunks_mut::<K>().0;
+        for (first, rows) in (0..).step_by(LANES).zip(rows.chunks_mut(LANES)) {
+            let mut regressions = Regressions::<K>::new();
+            for (lane, row) in rows.iter().enumerate() {
+                let c = splat(simd, row);
+                let mut sums = Sums::<S, K>::new(simd);
+                for t in (0..motions.nrows()).step_by(S::F64_LANES) {
+                    let w = moved::<S, K>(simd, motions, t);
+                    let felt = load(simd, &turns.felt, t);
+                    let root = turns.roots(simd, first + lane, t);
+                    let said = turns.find(simd, root, felt, dot(simd, &c, &w));
+                    sums.add(simd, &w, &said);
+                }
+                for a in 0..K {
+                    regressions.products[a][lane] = simd.reduce_sum_f64s(sums.products[a]);
+                    for b in 0..=a {
+                        regressions.squares[a][b][lane] = simd.reduce_sum_f64s(sums.squares[a][b]);
+                    }
+                }
+            }
+            regressions.solve();
+            for (lane, row) in rows.iter_mut().enumerate() {
+                (0..K).for_each(|a| row[a] = regressions.products[a][lane]);
+            }
+        }
+    }
+}
+
+/// [`Turns::residual_and_spare`], summed over times.
+struct Left<'a> {
+    turns: &'a Turns<'a>,
+    loadings: &'a [f64],
+    motions: &'a Mat<f64>,
+}
+
+impl WithSimd for Left<'_> {
+    type Output = [f64; 2];
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> [f64; 2] {
+        let Self { turns, loadings, motions } = self;
+        let (times, k) = (motions.nrows(), motions.ncols());
+        let none = simd.splat_f64s(0.0);
+        let taken = simd.splat_f64s(k as f64);
+        let [mut residuals, mut spares] = [none; 2];
+        for t in (0..times).step_by(S::F64_LANES) {
+            let felt = load(simd, &turns.felt, t);
+            let [mut residual, mut telling] = [none; 2];
+            for (sensor, c) in loadings.chunks(k).enumerate() {
+                let mut reach = none;
+                for (at, c) in c.iter().enumerate() {
+                    let w = load(simd, motions.col_as_slice(at), t);
+                    reach = simd.mul_add_f64s(simd.splat_f64s(*c), w, reach);
+                }
+                let said = turns.find(simd, turns.roots(simd, sensor, t), felt, reach);
+                let off = simd.sub_f64s(said.told, simd.mul_f64s(said.tells, reach));
+                residual = simd.mul_add_f64s(off, off, residual);
+                telling = simd.add_f64s(telling, said.tells);
+            }
+            residuals = simd.add_f64s(residuals, residual);
+            spares = simd.add_f64s(spares, simd.max_f64s(none, simd.sub_f64s(telling, taken)));
+        }
+        [simd.reduce_sum_f64s(residuals), simd.reduce_sum_f64s(spares)]
+    }
+}
+
+/// c of each sensor, one after the other.
+fn by_row(loadings: MatRef<'_, f64>) -> Vec<f64> {
+    let k = loadings.ncols();
+    (0..loadings.nrows()).flat_map(|sensor| (0..k).map(move |at| loadings[(sensor, at)])).collect()
+}
+
+/// w at times from `t` on, as many as a register holds.
+#[inline(always)]
+fn moved<S: Simd, const K: usize>(simd: S, motions: &Mat<f64>, t: usize) -> [S::f64s; K] {
+    let mut w = [simd.splat_f64s(0.0); K];
+    for (at, w) in w.iter_mut().enumerate() {
+        *w = load(simd, motions.col_as_slice(at), t);
+    }
+    w
+}
+
+/// Each number in all lanes of a register. By a loop, for `map` is not inlined.
+#[inline(always)]
+fn splat<S: Simd, const K: usize>(simd: S, c: &[f64; K]) -> [S::f64s; K] {
+    let mut all = [simd.splat_f64s(0.0); K];
+    for (all, c) in all.iter_mut().zip(c) {
+        *all = simd.splat_f64s(*c);
+    }
+    all
+}
+
+/// c · w.
+#[inline(always)]
+fn dot<S: Simd, const K: usize>(simd: S, c: &[S::f64s; K], w: &[S::f64s; K]) -> S::f64s {
+    let mut sum = simd.mul_f64s(c[0], w[0]);
+    for at in 1..K {
+        sum = simd.mul_add_f64s(c[at], w[at], sum);
+    }
+    sum
+}
+
+/// Numbers from a place on, as many as a register holds; 0 after the last.
+#[inline(always)]
+fn load<S: Simd>(simd: S, numbers: &[f64], from: usize) -> S::f64s {
+    let rest = &numbers[from..];
+    match S::as_simd_f64s(rest).0.first() {
+        Some(whole) => *whole,
+        None => simd.partial_load_f64s(rest),
+    }
+}
+
+/// Puts numbers from a place on.
+#[inline(always)]
+fn store<S: Simd>(to: &mut [f64; LANES], from: usize, numbers: S::f64s) {
+    S::as_mut_simd_f64s(&mut to[from..]).0[0] = numbers;
 }
