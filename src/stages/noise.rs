@@ -1,6 +1,7 @@
-//! Count as no touch what the noise of a sensor explains.
+//! Take noise off the pressures of sensors, and count as no touch what it explains.
 //!
-//! In: [`Tactile`] pressures of sensors that all change. Out: the same, with 0 where a pressure is within the noise of its sensor.
+//! In: [`Tactile`] pressures of sensors that all change. Out: the same, [smoothed](smooth()) where a sensor has noise, with 0 where a
+//! pressure is within it.
 //!
 //! Noise that is new at each sample shows in the second differences of a sensor, p(t−1) − 2p(t) + p(t+1), by three marks, and all of
 //! them have to be seen:
@@ -18,8 +19,11 @@
 //!
 //! The size in the middle is 1.0 to 1.2 standard deviations of the noise where values below 0 are cut, and 1.65 where they are not.
 
+mod smooth;
+
 use rayon::prelude::*;
 
+use self::smooth::smooth;
 use crate::stages::sense::Tactile;
 
 /// The largest ratio of the middle to the lower quartile that is noise.
@@ -28,8 +32,7 @@ const EVEN: f64 = 4.0;
 const RESTLESS: f64 = 0.75;
 /// How far the share of equal signs may lie from a half.
 const FORGETFUL: f64 = 0.2;
-/// Noise seldom exceeds so many times its middle second difference. Chosen among 3, 4, 5 and 6 on five bodies (seed 5, p = 0.5,
-/// T = 10⁴, noise of 0.1 of the root mean square of each sensor).
+/// Noise seldom exceeds so many times its middle second difference.
 const TIMES: f32 = 4.0;
 /// Fewer second differences than these tell nothing of noise.
 const FEWEST: usize = 100;
@@ -40,16 +43,16 @@ const ONE_IN: usize = 1000;
 pub fn above_noise(mut tactile: Tactile) -> (Tactile, usize) {
     let samples = tactile.samples;
     let cut = |series: &mut [f32]| {
-        let Some(limit) = limit(series) else { return 0 };
-        series.iter_mut().filter(|pressure| pressure.abs() < limit).for_each(|pressure| *pressure = 0.0);
+        let Some(size) = size(series) else { return 0 };
+        smooth(series, size);
         1
     };
     let noisy = tactile.pressures.par_chunks_exact_mut(samples).map(cut).sum();
     (tactile, noisy)
 }
 
-/// The size below which a pressure is noise; `None` if a sensor has none.
-fn limit(series: &[f32]) -> Option<f32> {
+/// The middle of the sizes of second differences of a series with noise; `None` if it has none.
+fn size(series: &[f32]) -> Option<f32> {
     let differences: Vec<f32> = series.windows(3).map(|three| three[0] - 2.0 * three[1] + three[2]).collect();
     let mut sizes: Vec<f32> =
         differences.iter().map(|difference| difference.abs()).filter(|size| *size > 0.0).collect();
@@ -67,9 +70,8 @@ fn limit(series: &[f32]) -> Option<f32> {
     let middle = sizes.len() / 2;
     let (below, &mut size, _) = sizes.select_nth_unstable_by(middle, f32::total_cmp);
     let quartile = *below.select_nth_unstable_by(middle / 2, f32::total_cmp).1;
-    let limit = TIMES * size;
-    let left = series.iter().filter(|pressure| pressure.abs() >= limit).count();
-    (f64::from(size) < EVEN * f64::from(quartile) && left * ONE_IN >= series.len()).then_some(limit)
+    let left = series.iter().filter(|pressure| pressure.abs() >= TIMES * size).count();
+    (f64::from(size) < EVEN * f64::from(quartile) && left * ONE_IN >= series.len()).then_some(size)
 }
 
 #[cfg(test)]
@@ -98,24 +100,24 @@ mod tests {
             let signed = noisy(&touch(), deviation, rng);
             let positive: Vec<f32> = signed.iter().map(|pressure| pressure.max(0.0)).collect();
             for series in [signed, positive] {
-                let found = limit(&series).unwrap() / deviation;
-                assert!((4.0..8.0).contains(&found), "{deviation}: {found}");
+                let found = size(&series).unwrap() / deviation;
+                assert!((1.0..2.0).contains(&found), "{deviation}: {found}");
             }
         }
     }
 
     #[test]
     fn touch_without_noise_stays_as_it_is() {
-        assert_eq!(limit(&touch()), None);
+        assert_eq!(size(&touch()), None);
         let on_and_off: Vec<f32> = touch().iter().map(|pressure| f32::from(*pressure > 10.0)).collect();
-        assert_eq!(limit(&on_and_off), None);
+        assert_eq!(size(&on_and_off), None);
         // A joint that rings at a limit from step to step, now and then: differences of one size.
         let ringing: Vec<f32> =
             (0..3000).map(|t: u16| f32::from(t % 1000 < 400) * (10.0 + f32::from(t % 2))).collect();
-        assert_eq!(limit(&ringing), None);
+        assert_eq!(size(&ringing), None);
         // Always: even then each difference is known from the last.
         let ringing: Vec<f32> = (0..3000).map(|t: u16| 10.0 + f32::from(t % 2)).collect();
-        assert_eq!(limit(&ringing), None);
+        assert_eq!(size(&ringing), None);
         for few in [vec![], vec![1.0], vec![1.0, 2.0], vec![1.0, 2.0, 4.0], vec![3.0; 100]] {
             let tactile = Tactile { samples: few.len().max(1), pressures: few };
             assert_eq!(above_noise(tactile.clone()), (tactile, 0));
