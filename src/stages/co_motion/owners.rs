@@ -79,6 +79,16 @@ pub fn owners(
     owners
 }
 
+/// What the tree over the other parts explains more, in nats, if one of all goes to the part that gains most by it.
+pub fn gain(parts: &[Motion], at: usize, samples: usize) -> f64 {
+    let others: Vec<Motion> =
+        parts.iter().enumerate().filter(|(place, _)| *place != at).map(|(_, own)| own.clone()).collect();
+    let moments = Monomials::new(&others, &parts[at..=at], samples);
+    let body = Body::new(&moments);
+    let with = |part: usize| body.with(&body.tried(vec![0], part)) - body.explained;
+    (0..others.len()).into_par_iter().map(with).reduce(|| f64::NEG_INFINITY, f64::max)
+}
+
 /// The first of the largest numbers.
 fn most(values: impl Iterator<Item = f64>) -> Option<(usize, f64)> {
     values.enumerate().reduce(|best, other| if other.1 > best.1 { other } else { best })

@@ -34,6 +34,8 @@ const CHOICE: usize = 4;
 const UNEXPLAINED: f64 = 0.05;
 /// What a sensor, or a set, may leave of its squares over what the one in the middle leaves.
 const TIMES_THE_MIDDLE: f64 = 3.0;
+/// Turns in which the motion of a set is found: of the many pieces, and of the few parts.
+const ROUNDS: [usize; 2] = [6, 16];
 /// Turns in which the motion of the body as a whole is found.
 const FEW_ROUNDS: usize = 3;
 /// Sets that a set is tried with, the nearest: of the many pieces, and of the few parts.
@@ -74,7 +76,7 @@ pub fn rigid_parts(tactile: &Tactile, sensors: &[usize], distances: &Distances) 
     let times = body.telling_times(&every);
     let found = body.parts_of(&every, &times, &PIECES);
     let labels = body.taken_apart(found.clone());
-    let fine = Search { roots: body.roots(&every, &times[1]), distances };
+    let fine = Search { roots: body.roots(&every, &times[1]), distances, rounds: ROUNDS[1] };
     let sets = fine.sets(members(&labels), Vec::new());
     let sets = if labels == found { sets } else { fine.exchanged(sets, true) };
     let (parts, loose) = fine.separated(sets);
@@ -116,8 +118,10 @@ impl Body<'_> {
         let n = sensors.len();
         let values = sensors.iter().flat_map(|&i| sensors.iter().map(move |&j| self.distances.get(i, j)));
         let distances = &Distances { sensors: n, values: values.collect() };
-        let [coarse, fine] =
-            [&times[0], &times[1]].map(|times| Search { roots: self.roots(sensors, times), distances });
+        let [coarse, fine] = [0, 1].map(|at| {
+            let roots = self.roots(sensors, &times[at]);
+            Search { roots, distances, rounds: ROUNDS[at] }
+        });
         let found = |size: &usize| {
             let count = (n / size).clamp(1, MAX_PIECES);
             let labels = linkage::clusters(n, |i, j| distances.get(i, j), Method::Average, count);
@@ -159,7 +163,7 @@ impl Body<'_> {
         let times = self.telling_times(part);
         let roots = self.roots(part, &times[1]);
         let every: Vec<usize> = (0..part.len()).collect();
-        let whole = set(&roots, every);
+        let whole = set(&roots, every, ROUNDS[1]);
         if whole.fit.residual <= UNEXPLAINED * whole.fit.spare {
             return None;
         }
@@ -167,7 +171,7 @@ impl Body<'_> {
         let labels = self.parts_of(part, &times, &PIECES[..1]);
         let parts = members(&labels);
         let count = parts.len();
-        let sum: f64 = parts.into_iter().map(|own| set(&roots, own).cost).sum();
+        let sum: f64 = parts.into_iter().map(|own| set(&roots, own, ROUNDS[1]).cost).sum();
         (count > 1 && whole.cost - sum > MARGIN).then_some(labels)
     }
 }
@@ -176,15 +180,22 @@ impl Body<'_> {
 struct Search<'a> {
     roots: Roots,
     distances: &'a Distances,
+    /// Turns in which the motion of a set is found.
+    rounds: usize,
 }
 
 impl Search<'_> {
+    /// A set of these sensors.
+    fn set(&self, sensors: Vec<usize>) -> Set {
+        set(&self.roots, sensors, self.rounds)
+    }
+
     /// Sets of these members; some are known.
     fn sets(&self, members: Vec<Vec<usize>>, known: Vec<Set>) -> Vec<Set> {
         let mut known: BTreeMap<Vec<usize>, Set> =
             known.into_iter().map(|set| (set.sensors.clone(), set)).collect();
         let found: Vec<_> = members.into_iter().map(|own| (known.remove(&own), own)).collect();
-        found.into_par_iter().map(|(known, own)| known.unwrap_or_else(|| set(&self.roots, own))).collect()
+        found.into_par_iter().map(|(known, own)| known.unwrap_or_else(|| self.set(own))).collect()
     }
 
     /// Makes one of two sets, of each and its `near` nearest, and moves sensors, until nothing changes.
@@ -211,7 +222,9 @@ impl Search<'_> {
                 .into_iter()
                 .filter(|pair| pair.1 >= fixed && !tried.contains_key(pair))
                 .collect();
-            let made = new.into_par_iter().map(|(a, b)| ((a, b), union(&self.roots, &sets[&a], &sets[&b])));
+            let made = new
+                .into_par_iter()
+                .map(|(a, b)| ((a, b), union(&self.roots, &sets[&a], &sets[&b], self.rounds)));
             tried.extend(made.collect::<Vec<_>>());
             let saved = |(&(a, b), both): (&(usize, usize), &Set)| sets[&a].cost + sets[&b].cost - both.cost;
             let Some((most, pair)) = tried
@@ -350,5 +363,6 @@ fn assigned(parts: &[Set], loose: &[Set], all: &Roots) -> RigidParts {
 
 mod separate;
 mod set;
+pub use self::separate::middle_of_sensors;
 #[cfg(test)]
 mod tests;

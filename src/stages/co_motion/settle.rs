@@ -8,19 +8,21 @@ use rayon::prelude::*;
 
 use super::censored::Roots;
 use super::faces::{alike, opposites};
-use super::motion::{LEAST_COMPONENTS, LEAST_OF_FACE, Motion, is_signed, motion, spread};
-use super::owners::owners;
-use super::rigid::{RigidParts, limit};
+use super::motion::{Motion, is_signed, motion, spread};
+use super::owners::{gain, owners};
+use super::rigid::{RigidParts, limit, middle_of_sensors};
 use super::tree::{CoMotion, joined};
-use crate::numerics::partition::named_by_appearance;
+use crate::numerics::partition::{named_by_appearance, sizes};
 use crate::stages::sense::Tactile;
 
 /// Times that likeness is read at, spread over all.
 const TIMES: usize = 2000;
 /// The share of a sensor's squares that its part may leave so that the tree is learned from it, if it leaves no more of others.
 const TRUSTED: f64 = 0.02;
-/// Sensors from which on a part may feel fewer than [`LEAST_COMPONENTS`].
-const MANY: usize = 24;
+/// What the tree must explain more by a small part's going to another, in nats, so that it is no part.
+const WEAK: f64 = 1.0;
+/// Components of a part that is whole: what a cylinder feels of its motion but its spin.
+const WHOLE: usize = 5;
 /// Loose sets whose part the joints are asked for, the largest: what is remembered of them grows with the square of their number.
 const MAX_SETS: usize = 40;
 
@@ -29,42 +31,25 @@ const MAX_SETS: usize = 40;
 ///
 /// In: M × T pressures, of any sign, and the parts and loose sets of their sensors. Out: parts without loose sets, and their tree.
 pub fn settle(tactile: &Tactile, mut parts: RigidParts, rng: &mut impl Rng) -> (RigidParts, CoMotion) {
-    let series: Vec<&[f32]> = tactile.series().collect();
-    let times: Vec<usize> = spread(tactile.samples, TIMES).collect();
-    let signed = is_signed(tactile);
-    let body = Body { roots: Roots::at(&series, &times, signed), signed, series };
-    let (known, sets) = body.parts_and_sets(&mut parts);
-    let (sets, rest) = largest(sets);
-    let (mut names, mut motions): (Vec<usize>, Vec<Motion>) = known.into_iter().unzip();
-    let of_sets = body.motions(sets.values());
-    let members: Vec<&[usize]> = sets.values().map(Vec::as_slice).collect();
-    let found = owners(&motions, &of_sets, &opposites(&body.roots, &members), tactile.samples);
-    if names.is_empty() {
-        names.extend(sets.keys());
-        motions.extend(of_sets);
-    } else {
-        for (sensors, (owner, own)) in sets.values().zip(found.into_iter().zip(of_sets)) {
-            let Some(owner) = owner else {
-                leave(&mut parts, sensors, names[0]);
-                continue;
-            };
-            motions[owner] = motions[owner].with(&own);
-            give(&mut parts, sensors, names[owner]);
-        }
-    }
-    rest.iter().for_each(|sensors| leave(&mut parts, sensors, names[0]));
+    let body = Body::new(tactile);
+    let (mut settled, names, motions) = loop {
+        let mut settled = parts.clone();
+        let (names, motions) = body.settled(&mut settled);
+        let Some(weak) = body.weakest(&parts, &names, &motions) else { break (settled, names, motions) };
+        body.come_apart(&mut parts, weak);
+    };
     // Loose sets leave gaps in the labels.
-    let labels = named_by_appearance(&parts.labels);
-    let new: BTreeMap<usize, usize> = parts.labels.iter().copied().zip(labels.iter().copied()).collect();
+    let labels = named_by_appearance(&settled.labels);
+    let new: BTreeMap<usize, usize> = settled.labels.iter().copied().zip(labels.iter().copied()).collect();
     let named = |(name, own): (usize, Motion)| Some((*new.get(&name)?, own));
     let nodes: BTreeMap<usize, Motion> = names.into_iter().zip(motions).filter_map(named).collect();
-    for next in &mut parts.next {
+    for next in &mut settled.next {
         *next = next.and_then(|(part, left)| Some((*new.get(&part)?, left)));
     }
-    (parts.labels, parts.loose) = (labels, Vec::new());
+    (settled.labels, settled.loose) = (labels, Vec::new());
     let (names, motions): (Vec<usize>, Vec<Motion>) = nodes.into_iter().unzip();
     let tree = joined(&names, &motions, tactile.samples, rng);
-    (parts, tree)
+    (settled, tree)
 }
 
 /// The largest sets, and the sensors of the others.
@@ -98,7 +83,19 @@ struct Body<'a> {
     roots: Roots,
 }
 
-impl Body<'_> {
+impl<'a> Body<'a> {
+    fn new(tactile: &'a Tactile) -> Self {
+        let series: Vec<&[f32]> = tactile.series().collect();
+        let times: Vec<usize> = spread(tactile.samples, TIMES).collect();
+        let signed = is_signed(tactile);
+        Self { roots: Roots::at(&series, &times, signed), signed, series }
+    }
+
+    /// T.
+    fn samples(&self) -> usize {
+        self.series.first().map_or(0, |series| series.len())
+    }
+
     fn motions<'b>(&self, sets: impl Iterator<Item = &'b Vec<usize>>) -> Vec<Motion> {
         let own = |sensors: &Vec<usize>| -> Vec<&[f32]> {
             sensors.iter().map(|&sensor| self.series[sensor]).collect()
@@ -107,56 +104,73 @@ impl Body<'_> {
         sets.par_iter().map(|series| motion(series, None, self.signed)).collect()
     }
 
-    /// The motions of all parts that feel enough, from the sensors that they explain; and the sensors of loose sets.
-    fn parts_and_sets(
-        &self,
-        parts: &mut RigidParts,
-    ) -> (BTreeMap<usize, Motion>, BTreeMap<usize, Vec<usize>>) {
-        let (mut known, mut sets): (BTreeMap<usize, Vec<usize>>, BTreeMap<usize, Vec<usize>>) =
-            Default::default();
-        for (sensor, (label, is_trusted)) in parts.labels.iter().zip(trusted(parts)).enumerate() {
-            if parts.loose.contains(label) {
-                sets.entry(*label).or_default().push(sensor);
-            } else if is_trusted {
-                known.entry(*label).or_default().push(sensor);
+    /// The parts, with the loose sets that are on them, and their motions.
+    fn settled(&self, parts: &mut RigidParts) -> (Vec<usize>, Vec<Motion>) {
+        let (known, sets) = parts_and_sets(parts);
+        let (sets, rest) = largest(sets);
+        let mut motions = self.motions(known.values());
+        let mut names: Vec<usize> = known.into_keys().collect();
+        let of_sets = self.motions(sets.values());
+        let members: Vec<&[usize]> = sets.values().map(Vec::as_slice).collect();
+        let found = owners(&motions, &of_sets, &opposites(&self.roots, &members), self.samples());
+        if names.is_empty() {
+            names.extend(sets.keys());
+            motions.extend(of_sets);
+        } else {
+            for (sensors, (owner, own)) in sets.values().zip(found.into_iter().zip(of_sets)) {
+                let Some(owner) = owner else {
+                    leave(parts, sensors, names[0]);
+                    continue;
+                };
+                motions[owner] = motions[owner].with(&own);
+                give(parts, sensors, names[owner]);
             }
         }
-        let motions = self.motions(known.values());
-        // The ends of two thin cylinders, say: the motion of each is one number.
-        let is_weak = |(sensors, own): (&Vec<usize>, &Motion)| {
-            let is_end = |face: &Motion| face.components < LEAST_OF_FACE;
-            sensors.len() < MANY
-                && own.components < LEAST_COMPONENTS
-                && self.motions(alike(&self.roots, sensors).iter()).iter().all(is_end)
+        rest.iter().for_each(|sensors| leave(parts, sensors, names[0]));
+        (names, motions)
+    }
+
+    /// Of the small parts that are not whole, the one by which the tree explains most more if it goes to another, if that is much.
+    fn weakest(&self, parts: &RigidParts, names: &[usize], motions: &[Motion]) -> Option<usize> {
+        let sizes = sizes(&parts.labels);
+        let own: Vec<usize> = names.iter().map(|name| sizes[name]).collect();
+        let small = middle_of_sensors(own.clone()).div_ceil(2);
+        let can_be = |at: &usize| {
+            own[*at] < small && motions[*at].components < WHOLE && !parts.loose.contains(&names[*at])
         };
-        let weak: Vec<usize> = known
-            .iter()
-            .zip(&motions)
-            .filter(|((_, sensors), own)| is_weak((sensors, own)))
-            .map(|(at, _)| *at.0)
-            .collect();
-        let mut motions: BTreeMap<usize, Motion> = known.into_keys().zip(motions).collect();
-        // Most of the skin is not loose.
-        let count = parts.labels.iter().filter(|label| weak.contains(label)).count();
-        if 2 * count < parts.labels.len() {
-            let mut name = parts.labels.iter().max().map_or(0, |last| last + 1);
-            for part in weak {
-                motions.remove(&part);
-                let own: Vec<usize> =
-                    (0..parts.labels.len()).filter(|at| parts.labels[*at] == part).collect();
-                for set in alike(&self.roots, &own) {
-                    give(parts, &set, name);
-                    sets.insert(name, set);
-                    name += 1;
-                }
-            }
+        let places = if names.len() > 2 { 0..names.len() } else { 0..0 };
+        let gains = places.filter(can_be).map(|at| (gain(motions, at, self.samples()), at));
+        let most = gains.reduce(|most, other| if other.0 > most.0 { other } else { most });
+        most.filter(|(gain, _)| *gain > WEAK).map(|(_, at)| names[at])
+    }
+
+    /// Makes loose sets of a part: of what feels alike.
+    fn come_apart(&self, parts: &mut RigidParts, part: usize) {
+        let own: Vec<usize> = (0..parts.labels.len()).filter(|at| parts.labels[*at] == part).collect();
+        for set in alike(&self.roots, &own) {
+            let name = parts.labels.iter().chain(&parts.loose).max().map_or(0, |last| last + 1);
+            give(parts, &set, name);
+            parts.loose.push(name);
         }
         // What was next to a part that is none any more has no next part.
         for next in &mut parts.next {
-            *next = next.filter(|(part, _)| motions.contains_key(part));
+            *next = next.filter(|(next, _)| *next != part);
         }
-        (motions, sets)
     }
+}
+
+/// The sensors of all parts that these explain, and the sensors of loose sets.
+fn parts_and_sets(parts: &RigidParts) -> (BTreeMap<usize, Vec<usize>>, BTreeMap<usize, Vec<usize>>) {
+    let (mut known, mut sets): (BTreeMap<usize, Vec<usize>>, BTreeMap<usize, Vec<usize>>) =
+        Default::default();
+    for (sensor, (label, is_trusted)) in parts.labels.iter().zip(trusted(parts)).enumerate() {
+        if parts.loose.contains(label) {
+            sets.entry(*label).or_default().push(sensor);
+        } else if is_trusted {
+            known.entry(*label).or_default().push(sensor);
+        }
+    }
+    (known, sets)
 }
 
 /// Whether the motion of its set explains each sensor. Others may be on another part, and would bring that one's motion.

@@ -4,19 +4,20 @@
 //! Where one motion explains all sensors of a set, what its faces say of this motion tells which share some. Where it does not,
 //! the set is a mixture of faces of several parts, and falls apart into these.
 
-use std::cmp::Reverse;
-
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 
 use super::super::faces::{alike, connected, faces};
 use super::super::motion::{LEAST_COMPONENTS, LEAST_OF_FACE};
-use super::set::{Set, set};
-use super::{MARGIN, SUPPORT, Search, UNEXPLAINED, limit};
+use super::set::{Set, TOLERANCE, set_of};
+use super::{MARGIN, SUPPORT, Search, least, limit};
 
 /// What two faces say of the same components of a motion, over what the lesser says of all, from which on they share some: more than
 /// the end of a thin cylinder says of its turning, and less than two faces of a box.
 const SHARED: f64 = 0.05;
+
+/// The share of what a mixture leaves from which on it is tried whether a set costs less in pieces.
+const LITTLE: f64 = 0.25;
 
 /// Some faces, and how many components of the motion of their set they say.
 type Group = (Vec<Vec<usize>>, f64);
@@ -25,71 +26,98 @@ impl Search<'_> {
     /// Parts, and loose sets.
     pub fn separated(&self, sets: Vec<Set>) -> (Vec<Set>, Vec<Set>) {
         let most = most_left(&sets);
-        let is_mixed = |set: &Set| is_mixed(set, most);
         let whole: Vec<Vec<usize>> = sets.iter().map(|set| set.sensors.clone()).collect();
-        let (cores, pieces): (Vec<_>, Vec<_>) = sets.par_iter().map(|own| self.divided(own, most)).unzip();
-        let cores: Vec<Vec<usize>> = cores.into_iter().filter(|core| !core.is_empty()).collect();
-        let pieces: Vec<Vec<usize>> = pieces.into_iter().flatten().collect();
-        let small = middle_of_sensors(cores.iter().chain(&pieces).map(Vec::len).collect()).div_ceil(2);
+        let small = middle_of_sensors(whole.iter().map(Vec::len).collect()).div_ceil(2);
+        let pieces: Vec<Vec<usize>> =
+            sets.par_iter().flat_map_iter(|own| self.pieces(own, most, small)).collect();
         let says = |set: &Set, components: usize, support: f64| {
-            set.fit.components() >= components && set.fit.spare >= support && !is_mixed(set)
+            set.fit.components() >= components && set.fit.spare >= support && !is_mixed(set, most)
         };
-        let is_part = |set: &Set| {
-            set.sensors.len() >= small || says(set, LEAST_COMPONENTS, set.fit.components() as f64)
-        };
-        let (mut parts, mut loose): (Vec<Set>, Vec<Set>) =
-            self.sets(cores, sets).into_iter().partition(is_part);
-        let (faces, others): (Vec<Set>, Vec<Set>) =
-            self.sets(pieces, Vec::new()).into_iter().partition(|set| says(set, LEAST_OF_FACE, SUPPORT));
-        loose.extend(others);
+        let is_large = |set: &Set| set.sensors.len() >= small;
+        let is_part = |set: &Set| is_large(set) || says(set, LEAST_COMPONENTS, set.fit.components() as f64);
+        let pieces = self.told_by_three(self.sets(pieces, sets));
+        let (mut parts, pieces): (Vec<Set>, Vec<Set>) = pieces.into_iter().partition(is_large);
+        let (faces, loose): (Vec<Set>, Vec<Set>) =
+            pieces.into_iter().partition(|set| says(set, LEAST_OF_FACE, SUPPORT));
         let sensors: Vec<usize> = loose.iter().flat_map(|set| set.sensors.iter().copied()).collect();
         let mut loose = self.sets(alike(&self.roots, &sorted(sensors)), loose);
         // Faces that say enough find their part, or become one, by what sets cost.
         let fixed = parts.len();
         parts.extend(faces);
         if parts.len() > fixed {
-            let merged = self.merged(parts, usize::MAX, MARGIN, fixed);
             // A set of two begins with as many components as the one that had more, which may be more than both need.
-            let anew = |own: Set| if is_part(&own) { own } else { set(&self.roots, own.sensors) };
-            let merged: Vec<Set> = merged.into_par_iter().map(anew).collect();
-            let (found, others): (Vec<Set>, Vec<Set>) = merged.into_iter().partition(is_part);
+            let anew = |own: Set| if is_part(&own) { own } else { self.set(own.sensors) };
+            let merged: Vec<Set> =
+                self.merged(parts, usize::MAX, MARGIN, fixed).into_par_iter().map(anew).collect();
+            let (found, others): (Vec<Set>, Vec<Set>) =
+                self.told_by_three(merged).into_iter().partition(is_part);
             parts = found;
             loose.extend(others);
         }
         // Where nothing is left that could be a part, the sets stay as they were.
-        if parts.is_empty() { (self.sets(whole, Vec::new()), Vec::new()) } else { (parts, loose) }
+        if parts.is_empty() { (self.sets(whole, Vec::new()), Vec::new()) } else { self.adopted(parts, loose) }
     }
 
-    /// What of a set is a part, and what comes off it.
-    fn divided(&self, own: &Set, most: f64) -> (Vec<usize>, Vec<Vec<usize>>) {
-        let faces = faces(&self.roots, &own.sensors);
-        if !is_mixed(own, most) {
-            return self.core(own, faces);
-        }
-        let pure = |face: Vec<usize>| {
-            let own = set(&self.roots, face.clone());
-            let alike = alike(&self.roots, &face);
-            if is_mixed(&own, most) {
-                return alike;
+    /// Loose sensors that the motion of a part explains go to it.
+    fn adopted(&self, parts: Vec<Set>, loose: Vec<Set>) -> (Vec<Set>, Vec<Set>) {
+        let sensors: Vec<usize> = loose.iter().flat_map(|set| set.sensors.iter().copied()).collect();
+        let roots = self.roots.select(&sensors);
+        let left: Vec<Vec<f64>> = parts.par_iter().map(|part| roots.left(&part.fit)).collect();
+        let mut members: Vec<Vec<usize>> = parts.iter().map(|part| part.sensors.clone()).collect();
+        let mut rest = Vec::new();
+        for (at, &sensor) in sensors.iter().enumerate() {
+            match least(left.iter().map(|left| left[at])) {
+                Some((part, left)) if left < TOLERANCE => members[part].push(sensor),
+                _ => rest.push(sensor),
             }
-            self.groups(&own, alike).into_iter().map(|(group, _)| sorted(group.concat())).collect()
+        }
+        let sets =
+            loose.iter().map(|set| set.sensors.iter().copied().filter(|at| rest.contains(at)).collect());
+        let sets: Vec<Vec<usize>> = sets.filter(|set: &Vec<usize>| !set.is_empty()).collect();
+        (self.sets(members.into_iter().map(sorted).collect(), parts), self.sets(sets, loose))
+    }
+
+    /// Sets of two components, of which these leave more than a tolerance, with a third if that costs hardly more.
+    fn told_by_three(&self, sets: Vec<Set>) -> Vec<Set> {
+        let more = |own: Set| {
+            let leaves = own.fit.residual > TOLERANCE * own.fit.spare;
+            if own.fit.components() + 1 != LEAST_COMPONENTS || !leaves {
+                return own;
+            }
+            let more = set_of(&self.roots, own.sensors.clone(), LEAST_COMPONENTS, self.rounds);
+            if more.cost < own.cost + MARGIN { more } else { own }
         };
-        (Vec::new(), faces.into_iter().flat_map(pure).collect())
+        sets.into_par_iter().map(more).collect()
     }
 
-    /// The faces of a set that share some of its motion with the largest one, or say much of it; and the others.
-    fn core(&self, set: &Set, faces: Vec<Vec<usize>>) -> (Vec<usize>, Vec<Vec<usize>>) {
-        let mut groups = self.groups(set, faces);
-        groups.sort_by_key(|(group, _)| Reverse(group.iter().map(Vec::len).sum::<usize>()));
-        let (mut core, mut others) = (Vec::new(), Vec::new());
-        for (at, (group, says)) in groups.into_iter().enumerate() {
-            if at == 0 || says > LEAST_COMPONENTS as f64 - 0.5 {
-                core.extend(group.concat());
-            } else {
-                others.extend(group);
+    /// What a set falls into: faces that share nothing of its motion with the others; or, where one motion does not explain what it
+    /// feels, and by themselves they cost less, all that feels alike.
+    fn pieces(&self, own: &Set, most: f64, small: usize) -> Vec<Vec<usize>> {
+        let faces = faces(&self.roots, &own.sensors);
+        let joined = |groups: Vec<Group>| groups.into_iter().map(|(group, _)| sorted(group.concat()));
+        // A little may well be a few sensors of another part; the costs tell.
+        let little = LITTLE * most;
+        if is_mixed(own, little) {
+            let pure = |face: &Vec<usize>| -> Vec<Vec<usize>> {
+                let own = self.set(face.clone());
+                let alike = alike(&self.roots, face);
+                if is_mixed(&own, little) { alike } else { joined(self.groups(&own, alike)).collect() }
+            };
+            let pieces: Vec<Vec<usize>> = faces.iter().flat_map(pure).collect();
+            let pieces = self.merged(self.sets(pieces, Vec::new()), usize::MAX, MARGIN, 0);
+            if pieces.iter().map(|piece| piece.cost).sum::<f64>() + MARGIN < own.cost {
+                return pieces.into_iter().map(|piece| piece.sensors).collect();
             }
         }
-        (sorted(core), others)
+        let groups = self.groups(own, faces);
+        if own.sensors.len() < small {
+            return joined(groups).collect();
+        }
+        // Two pairs of faces of a flat box share little, but each says much.
+        let (much, little): (Vec<Group>, Vec<Group>) =
+            groups.into_iter().partition(|(_, says)| *says > LEAST_COMPONENTS as f64 - 0.5);
+        let core = sorted(much.into_iter().flat_map(|(group, _)| group.concat()).collect());
+        std::iter::once(core).filter(|core| !core.is_empty()).chain(joined(little)).collect()
     }
 
     /// The faces of a set, those together that share some of its motion.
@@ -137,7 +165,7 @@ impl Search<'_> {
 /// The share of squares that a set may leave if it is no mixture: with noise, more than without.
 fn most_left(sets: &[Set]) -> f64 {
     let left = |set: &Set| set.fit.residual / set.fit.spare;
-    limit(sets.iter().filter(|set| set.fit.spare > 0.0).map(left).collect(), UNEXPLAINED)
+    limit(sets.iter().filter(|set| set.fit.spare > 0.0).map(left).collect(), TOLERANCE)
 }
 
 /// Whether one motion does not explain what a set feels.
@@ -151,7 +179,7 @@ fn sorted(mut sensors: Vec<usize>) -> Vec<usize> {
 }
 
 /// Of the sizes of sets, that of the set which the sensor in the middle is in.
-fn middle_of_sensors(mut sizes: Vec<usize>) -> usize {
+pub fn middle_of_sensors(mut sizes: Vec<usize>) -> usize {
     sizes.sort_unstable();
     let half = sizes.iter().sum::<usize>().div_ceil(2);
     let mut below = 0;

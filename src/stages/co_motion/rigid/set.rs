@@ -9,12 +9,10 @@ use super::super::censored::{Fit, Roots};
 use super::super::motion::spread;
 use crate::numerics::eigen::largest;
 
-/// Turns in which a motion is found.
-const ROUNDS: usize = 6;
 /// Sensors of a set that its motion is found from, spread over all.
 pub const MAX_SENSORS: usize = 64;
 /// The share of a sensor's squares that is left unexplained without cost.
-const TOLERANCE: f64 = 0.01;
+pub const TOLERANCE: f64 = 0.01;
 
 /// A set of sensors.
 pub struct Set {
@@ -29,27 +27,32 @@ pub struct Set {
 }
 
 /// A set whose motion is found from its sensors.
-pub fn set(roots: &Roots, sensors: Vec<usize>) -> Set {
-    best_fit(roots, sensors, 1)
+pub fn set(roots: &Roots, sensors: Vec<usize>, rounds: usize) -> Set {
+    best_fit(roots, sensors, 1, rounds)
+}
+
+/// The same, of so many components at least.
+pub fn set_of(roots: &Roots, sensors: Vec<usize>, least: usize, rounds: usize) -> Set {
+    best_fit(roots, sensors, least, rounds)
 }
 
 /// A set of two.
-pub fn union(roots: &Roots, a: &Set, b: &Set) -> Set {
+pub fn union(roots: &Roots, a: &Set, b: &Set, rounds: usize) -> Set {
     let mut sensors = [a.sensors.as_slice(), &b.sensors].concat();
     sensors.sort_unstable();
     // Turns that begin with the motions of both would end where these are, which is no better than from the start, and takes
     // pieces of different parts for one.
-    best_fit(roots, sensors, a.fit.components().max(b.fit.components()))
+    best_fit(roots, sensors, a.fit.components().max(b.fit.components()), rounds)
 }
 
 /// A set with the number of components, of `least` and more, that makes it cost least.
-fn best_fit(roots: &Roots, sensors: Vec<usize>, least: usize) -> Set {
+fn best_fit(roots: &Roots, sensors: Vec<usize>, least: usize, rounds: usize) -> Set {
     let sample: Vec<usize> = spread(sensors.len(), MAX_SENSORS).map(|at| sensors[at]).collect();
     let own = roots.select(&sample);
     let start = own.start();
     let most = start.components();
     let try_with = |k: usize| {
-        let fit = own.fit(&start, k, ROUNDS);
+        let fit = own.fit(&start, k, rounds);
         (cost(&fit, sensors.len()), fit)
     };
     // Costs fall with the number of components, and then rise; one step up may be a start that was not good.
@@ -81,6 +84,6 @@ fn cost(fit: &Fit, sensors: usize) -> f64 {
     let variances =
         largest(fit.scatter().as_ref(), fit.components()).map_or_else(|_| Vec::new(), |eigen| eigen.values);
     let components: f64 = variances.iter().map(|variance| (scale * variance).max(0.0).ln_1p()).sum();
-    let excess = if fit.spare > 0.0 { (fit.residual / fit.spare / TOLERANCE).max(1.0).ln() } else { 0.0 };
+    let excess = if fit.spare > 0.0 { (fit.residual / fit.spare / TOLERANCE).ln_1p() } else { 0.0 };
     0.5 * (components + ratio * fit.spare * excess + sensors as f64 * k * times.ln() / times)
 }
