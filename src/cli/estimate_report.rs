@@ -93,7 +93,7 @@ impl Shown<'_> {
             ("samples", read.tactile.samples.to_string()),
             ("samples left out", read.lost_samples.to_string()),
             ("sensors left out", dropped),
-            ("sensors with noise, which counts as no touch", read.noisy.to_string()),
+            ("sensors with noise, which are smoothed", read.noisy.to_string()),
             ("seed", self.seed.to_string()),
             ("revision", env!("BODYSCHEMA_REVISION").to_owned()),
         ]

@@ -114,7 +114,7 @@ pub fn without_noise(input: &Path, tactile: Tactile) -> (Tactile, usize) {
     let (tactile, noisy) = above_noise(tactile);
     if noisy > 0 {
         eprintln!(
-            "bodyschema: {}: {noisy} of {} sensors have noise; pressures within it count as no touch",
+            "bodyschema: {}: {noisy} of {} sensors have noise; they are smoothed, and pressures within it count as no touch",
             input.display(),
             tactile.sensors()
         );

@@ -11,6 +11,8 @@
 
 mod censored;
 mod faces;
+#[cfg(test)]
+mod fixtures;
 mod joint_speed;
 mod motion;
 mod owners;

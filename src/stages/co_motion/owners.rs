@@ -285,42 +285,13 @@ impl Monomials {
 mod tests {
     use rand::RngExt;
 
+    use super::super::fixtures::row;
     use super::*;
     use crate::numerics::rng::stream;
 
-    /// Three planar parts in a row, 0 – 1 – 2, which feel their velocity across, and their rate; and what the ends of each feel
-    /// of its velocity along.
-    fn row_of_three(samples: usize) -> (Vec<Motion>, Vec<Motion>) {
-        let mut rng = stream(1, 1, "owners", 0);
-        let mut across = vec![Vec::new(); 3];
-        let mut along = vec![Vec::new(); 3];
-        for _ in 0..samples {
-            let mut uniform = || rng.random_range(-1.0..1.0);
-            let (mut velocity, mut rate) = ([uniform(), uniform()], uniform());
-            for part in 0..3 {
-                if part > 0 {
-                    // To the joint, half a length further on; into the next part's frame; to its middle.
-                    let joint: [f64; 2] = [velocity[0], velocity[1] + 0.5 * rate];
-                    let (sine, cosine) = (3.0 * uniform()).sin_cos();
-                    rate = uniform();
-                    velocity = [
-                        cosine * joint[0] - sine * joint[1],
-                        sine * joint[0] + cosine * joint[1] + 0.5 * rate,
-                    ];
-                }
-                across[part].extend([velocity[1], rate]);
-                along[part].push(velocity[0]);
-            }
-        }
-        let motions = |values: Vec<Vec<f64>>, components| {
-            values.into_iter().map(|values| Motion { components, values }).collect()
-        };
-        (motions(across, 2), motions(along, 1))
-    }
-
     #[test]
     fn ends_are_on_the_part_whose_joints_need_them() {
-        let (parts, ends) = row_of_three(4000);
+        let (parts, ends) = row(3, 4000);
         assert_eq!(owners(&parts, &ends, &[], 4000), [Some(0), Some(1), Some(2)]);
         // In two halves, of which one rests while the other feels.
         let half = |end: &Motion, sign: f64| Motion {
@@ -335,7 +306,7 @@ mod tests {
 
     #[test]
     fn what_no_joint_needs_is_on_no_part() {
-        let (parts, ends) = row_of_three(4000);
+        let (parts, ends) = row(3, 4000);
         let parts: Vec<Motion> = parts.iter().zip(&ends).map(|(part, end)| part.with(end)).collect();
         let mut rng = stream(1, 1, "owners", 1);
         let other =

@@ -35,6 +35,7 @@ impl<const K: usize> Regressions<K> {
 
 /// Solves by the factors of Cholesky.
 #[inline(always)]
+#[expect(clippy::needless_range_loop, reason = "rows and columns of a triangle")]
 fn cholesky<const K: usize>(factor: &mut [[Lanes; K]; K], found: &mut [Lanes; K]) {
     let mut ridge = [0.0; LANES];
     for a in 0..K {

@@ -188,6 +188,7 @@ fn trusted(parts: &RigidParts) -> Vec<bool> {
 mod tests {
     use rand::RngExt;
 
+    use super::super::fixtures::row;
     use super::*;
     use crate::numerics::rng::stream;
 
@@ -230,31 +231,36 @@ mod tests {
         assert!(settled.next.iter().flatten().all(|(part, left)| *part < 2 && left.is_finite()));
     }
 
-    /// Two parts as above, and a third of two faces of eight sensors, each of which feels what `c` says of two numbers.
-    fn small_part(c: impl Fn(usize, f64) -> [f64; 2]) -> (Tactile, RigidParts) {
-        let (mut tactile, parts) = many_singles();
-        tactile.pressures.truncate(60 * tactile.samples);
+    /// Three planar parts in a row of 20 sensors on their sides, and a fourth of six: `c` of what the last part, and the ends of the
+    /// middle one, feel.
+    fn small_part(c: impl Fn(usize) -> [f64; 3]) -> (Tactile, RigidParts) {
+        let samples = 4000;
+        let (sides, ends) = row(4, samples);
         let mut rng = stream(2, 1, "settle", 0);
-        let w: Vec<f64> = (0..2 * tactile.samples).map(|_| rng.random_range(-1.0..1.0)).collect();
-        for at in 0..16 {
-            let c = c(at / 8, f64::from(at as u32 % 8) / 7.0 - 0.5);
-            tactile.pressures.extend(felt(&w, &c));
+        let mut pressures = Vec::new();
+        for side in &sides[..3] {
+            for _ in 0..20 {
+                let c = [rng.random_range(-1.0..1.0), rng.random_range(-1.0..1.0)];
+                pressures.extend(felt(&side.values, &c));
+            }
         }
-        let labels: Vec<usize> = parts.labels[..60].iter().copied().chain([2; 16]).collect();
+        let last = sides[3].with(&ends[1]);
+        (0..6).for_each(|sensor| pressures.extend(felt(&last.values, &c(sensor))));
+        let labels: Vec<usize> = (0..66).map(|sensor| sensor / 20).collect();
         let (left, next) = (vec![0.0; labels.len()], vec![Some((0, 0.5)); labels.len()]);
-        (tactile, RigidParts { labels, left, next, loose: Vec::new() })
+        (Tactile { samples, pressures }, RigidParts { labels, left, next, loose: Vec::new() })
     }
 
     #[test]
-    fn a_small_part_stays_one_if_a_face_of_it_feels_how_it_turns() {
-        let parts = |(tactile, parts): (Tactile, RigidParts)| {
-            let (_, tree) = settle(&tactile, parts, &mut stream(1, 1, "co-motion", 0));
-            tree.parts.len()
+    fn a_small_set_is_a_part_unless_the_joints_need_it_elsewhere() {
+        let settled = |(tactile, parts): (Tactile, RigidParts)| {
+            settle(&tactile, parts, &mut stream(1, 1, "co-motion", 0)).0.labels
         };
-        // The upper and the lower side of a foot; and the ends of two thin cylinders, which have nothing to do with each other.
-        let sides = |face: usize, x: f64| if face == 0 { [1.0, x] } else { [-1.0, x] };
-        let ends = |face: usize, _| if face == 0 { [1.0, 0.0] } else { [0.0, 1.0] };
-        assert_eq!((parts(small_part(sides)), parts(small_part(ends))), (3, 2));
+        let sign = |sensor: usize| if sensor.is_multiple_of(2) { 1.0 } else { -1.0 };
+        let foot = settled(small_part(|sensor| [sign(sensor), sensor as f64 / 6.0 - 0.4, 0.0]));
+        assert_eq!(foot[60..], [3; 6]);
+        let ends = settled(small_part(|sensor| [0.0, 0.0, sign(sensor)]));
+        assert_eq!(ends[60..], [1; 6]);
     }
 
     #[test]

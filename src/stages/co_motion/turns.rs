@@ -112,6 +112,7 @@ impl<S: Simd, const K: usize> Sums<S, K> {
     }
 
     #[inline(always)]
+    #[expect(clippy::needless_range_loop, reason = "rows and columns of a triangle")]
     fn add(&mut self, simd: S, regressors: &[S::f64s; K], said: &Said<S>) {
         for a in 0..K {
             let own = simd.mul_f64s(said.tells, regressors[a]);
