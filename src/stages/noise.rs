@@ -1,6 +1,6 @@
 //! Take noise off the pressures of sensors, and count as no touch what it explains.
 //!
-//! In: [`Tactile`] pressures of sensors that all change. Out: the same, [smoothed](smooth()) where a sensor has noise, with 0 where a
+//! In: [`Tactile`] pressures of sensors that all change. Out: the same, smoothed where a sensor has noise, with 0 where a
 //! pressure is within it.
 //!
 //! Noise that is new at each sample shows in the second differences of a sensor, p(t−1) − 2p(t) + p(t+1), by three marks, and all of
@@ -36,7 +36,7 @@ const FORGETFUL: f64 = 0.2;
 const TIMES: f32 = 4.0;
 /// Fewer second differences than these tell nothing of noise.
 const FEWEST: usize = 100;
-/// A sensor of which fewer than one sample in so many would be left has levels, such as on and off, and no noise.
+/// A sensor of which fewer than one sample in so many exceeds its noise has levels, such as on and off, and no noise.
 const ONE_IN: usize = 1000;
 
 /// The pressures above the noise, and how many sensors have noise.

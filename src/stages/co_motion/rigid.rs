@@ -163,7 +163,7 @@ impl Body<'_> {
         let times = self.telling_times(part);
         let roots = self.roots(part, &times[1]);
         let every: Vec<usize> = (0..part.len()).collect();
-        let whole = set(&roots, every, ROUNDS[1]);
+        let whole = set(&roots, every, 1, ROUNDS[1]);
         if whole.fit.residual <= UNEXPLAINED * whole.fit.spare {
             return None;
         }
@@ -171,7 +171,7 @@ impl Body<'_> {
         let labels = self.parts_of(part, &times, &PIECES[..1]);
         let parts = members(&labels);
         let count = parts.len();
-        let sum: f64 = parts.into_iter().map(|own| set(&roots, own, ROUNDS[1]).cost).sum();
+        let sum: f64 = parts.into_iter().map(|own| set(&roots, own, 1, ROUNDS[1]).cost).sum();
         (count > 1 && whole.cost - sum > MARGIN).then_some(labels)
     }
 }
@@ -187,7 +187,7 @@ struct Search<'a> {
 impl Search<'_> {
     /// A set of these sensors.
     fn set(&self, sensors: Vec<usize>) -> Set {
-        set(&self.roots, sensors, self.rounds)
+        set(&self.roots, sensors, 1, self.rounds)
     }
 
     /// Sets of these members; some are known.
@@ -329,6 +329,18 @@ pub fn limit(mut shares: Vec<f64>, least: f64) -> f64 {
     shares.get(shares.len() / 2).map_or(least, |middle| f64::max(least, TIMES_THE_MIDDLE * middle))
 }
 
+/// Of the sizes of sets, that of the set which the sensor in the middle is in.
+pub fn middle_of_sensors(mut sizes: Vec<usize>) -> usize {
+    sizes.sort_unstable();
+    let half = sizes.iter().sum::<usize>().div_ceil(2);
+    let mut below = 0;
+    let reaches = |size: &usize| {
+        below += size;
+        below >= half
+    };
+    sizes.into_iter().find(reaches).unwrap_or(0)
+}
+
 /// The first of the smallest numbers.
 fn least(values: impl Iterator<Item = f64>) -> Option<(usize, f64)> {
     values.enumerate().reduce(|best, other| if other.1 < best.1 { other } else { best })
@@ -363,6 +375,6 @@ fn assigned(parts: &[Set], loose: &[Set], all: &Roots) -> RigidParts {
 
 mod separate;
 mod set;
-pub use self::separate::middle_of_sensors;
+
 #[cfg(test)]
 mod tests;

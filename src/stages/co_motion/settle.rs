@@ -1,4 +1,5 @@
-//! Find the tree over parts that were found, and by it the part of loose sets of sensors.
+//! Find the tree over parts that were found, and by it the part of loose sets of sensors. Small parts that the joints show to be pieces
+//! of others become loose sets, too.
 
 use std::cmp::Reverse;
 use std::collections::BTreeMap;

@@ -37,7 +37,8 @@ impl<'a> Turns<'a> {
             3 => Arch::new().dispatch(Move::<3> { turns: self, loadings: &loadings, motions }),
             4 => Arch::new().dispatch(Move::<4> { turns: self, loadings: &loadings, motions }),
             5 => Arch::new().dispatch(Move::<5> { turns: self, loadings: &loadings, motions }),
-            _ => Arch::new().dispatch(Move::<6> { turns: self, loadings: &loadings, motions }),
+            6 => Arch::new().dispatch(Move::<6> { turns: self, loadings: &loadings, motions }),
+            k => unreachable!("a motion has at most six numbers, not {k}"),
         }
     }
 
@@ -54,7 +55,8 @@ impl<'a> Turns<'a> {
             3 => Arch::new().dispatch(Load::<3> { turns: self, loadings: &mut rows, motions }),
             4 => Arch::new().dispatch(Load::<4> { turns: self, loadings: &mut rows, motions }),
             5 => Arch::new().dispatch(Load::<5> { turns: self, loadings: &mut rows, motions }),
-            _ => Arch::new().dispatch(Load::<6> { turns: self, loadings: &mut rows, motions }),
+            6 => Arch::new().dispatch(Load::<6> { turns: self, loadings: &mut rows, motions }),
+            k => unreachable!("a motion has at most six numbers, not {k}"),
         }
         for (sensor, row) in rows.chunks(k).enumerate() {
             row.iter().enumerate().for_each(|(at, value)| loadings[(sensor, at)] = *value);
@@ -228,7 +230,7 @@ impl WithSimd for Left<'_> {
         for t in (0..times).step_by(S::F64_LANES) {
             let felt = load(simd, &turns.felt, t);
             let [mut residual, mut telling] = [none; 2];
-            for (sensor, c) in loadings.chunks(k).enumerate() {
+            for (sensor, c) in loadings.chunks(k.max(1)).enumerate() {
                 let mut reach = none;
                 for (at, c) in c.iter().enumerate() {
                     let w = load(simd, motions.col_as_slice(at), t);
@@ -296,4 +298,83 @@ fn load<S: Simd>(simd: S, numbers: &[f64], from: usize) -> S::f64s {
 #[inline(always)]
 fn store<S: Simd>(to: &mut [f64; LANES], from: usize, numbers: S::f64s) {
     S::as_mut_simd_f64s(&mut to[from..]).0[0] = numbers;
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::RngExt;
+
+    use super::*;
+    use crate::numerics::rng::stream;
+
+    /// Roots, c and w of random numbers, and from which root on one is felt at each time.
+    fn example(times: usize, k: usize, signed: bool) -> (Mat<f64>, Vec<f64>, Mat<f64>, Mat<f64>) {
+        let mut rng = stream(1, 1, "turns", times * 10 + k);
+        let mut random = |rows, columns| Mat::from_fn(rows, columns, |_, _| rng.random_range(-1.0_f64..1.0));
+        let (values, loadings, motions) = (random(times, 9), random(9, k), random(times, k));
+        if signed {
+            return (values, vec![f64::NEG_INFINITY; times], loadings, motions);
+        }
+        let values = Mat::from_fn(times, 9, |t, sensor| f64::max(0.0, values[(t, sensor)]));
+        (values, vec![0.1; times], loadings, motions)
+    }
+
+    /// Squares and products of what a root says, added to those of `x`.
+    fn add(sums: &mut (Mat<f64>, Mat<f64>), x: &[f64], says: bool, root: f64) {
+        for (a, own) in x.iter().enumerate().filter(|_| says) {
+            x.iter().enumerate().for_each(|(b, other)| sums.0[(a, b)] += own * other);
+            sums.1[(a, 0)] += own * root;
+        }
+    }
+
+    #[test]
+    fn a_turn_is_what_plain_sums_give_at_any_number_of_times() {
+        for (times, signed) in [(1, false), (31, false), (33, true), (37, false), (70, true)] {
+            for k in 1..=6 {
+                let (values, felt, loadings, motions) = example(times, k, signed);
+                let turns = Turns::new(values.as_ref(), &felt);
+                let row = |of: &Mat<f64>, at: usize| -> Vec<f64> { (0..k).map(|a| of[(at, a)]).collect() };
+                let reach = |t: usize, sensor: usize| -> f64 {
+                    row(&loadings, sensor).iter().zip(row(&motions, t)).map(|(c, w)| c * w).sum()
+                };
+                let says = |t: usize, sensor: usize| {
+                    values[(t, sensor)] >= felt[t] || reach(t, sensor) > values[(t, sensor)]
+                };
+                let is_solved = |(squares, products): &(Mat<f64>, Mat<f64>), found: Vec<f64>| {
+                    let found = Mat::from_fn(k, 1, |a, _| found[a]);
+                    let off = squares * &found - products;
+                    // The ridge takes a little.
+                    assert!(off.norm_max() < 1e-4 * (1.0 + found.norm_max()) * (1.0 + squares.norm_max()));
+                };
+                let mut moved = motions.clone();
+                turns.move_all(loadings.as_ref(), &mut moved);
+                for t in 0..times {
+                    let mut sums = (Mat::zeros(k, k), Mat::zeros(k, 1));
+                    (0..9).for_each(|sensor| {
+                        add(&mut sums, &row(&loadings, sensor), says(t, sensor), values[(t, sensor)]);
+                    });
+                    is_solved(&sums, row(&moved, t));
+                }
+                let mut loaded = loadings.clone();
+                turns.load_all(loaded.as_mut(), &motions);
+                let mut left = [0.0; 2];
+                for sensor in 0..9 {
+                    let mut sums = (Mat::zeros(k, k), Mat::zeros(k, 1));
+                    (0..times).for_each(|t| {
+                        add(&mut sums, &row(&motions, t), says(t, sensor), values[(t, sensor)]);
+                    });
+                    is_solved(&sums, row(&loaded, sensor));
+                }
+                for t in 0..times {
+                    let telling: Vec<usize> = (0..9).filter(|sensor| says(t, *sensor)).collect();
+                    left[0] +=
+                        telling.iter().map(|&at| (values[(t, at)] - reach(t, at)).powi(2)).sum::<f64>();
+                    left[1] += f64::max(0.0, telling.len() as f64 - k as f64);
+                }
+                let found = turns.residual_and_spare(loadings.as_ref(), &motions);
+                let is_near = |a: f64, b: f64| (a - b / times as f64).abs() < 1e-12 * (1.0 + b);
+                assert!(is_near(found[0], left[0]) && is_near(found[1], left[1]), "{times} {k} {signed}");
+            }
+        }
+    }
 }

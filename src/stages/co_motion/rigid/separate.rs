@@ -1,16 +1,17 @@
 //! Tell parts from loose sets: sensors that share nothing of their motion with the rest of their part.
 //!
 //! The motion of a loose set, such as the ends of a cylinder, does not say which part it is on, so that the search gives it to any.
-//! Where one motion explains all sensors of a set, what its faces say of this motion tells which share some. Where it does not,
-//! the set is a mixture of faces of several parts, and falls apart into these.
+//! Where one motion explains all sensors of a set, what its faces say of this motion tells which share some. Where it does not, the set
+//! may be a mixture of faces of several parts, and falls apart if its pieces cost less. Large pieces are parts; others find a part, or
+//! each other, by what sets cost, or are loose.
 
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 
 use super::super::faces::{alike, connected, faces};
 use super::super::motion::{LEAST_COMPONENTS, LEAST_OF_FACE};
-use super::set::{Set, TOLERANCE, set_of};
-use super::{MARGIN, SUPPORT, Search, least, limit};
+use super::set::{Set, TOLERANCE, set};
+use super::{MARGIN, SUPPORT, Search, least, limit, middle_of_sensors};
 
 /// What two faces say of the same components of a motion, over what the lesser says of all, from which on they share some: more than
 /// the end of a thin cylinder says of its turning, and less than two faces of a box.
@@ -84,7 +85,7 @@ impl Search<'_> {
             if own.fit.components() + 1 != LEAST_COMPONENTS || !leaves {
                 return own;
             }
-            let more = set_of(&self.roots, own.sensors.clone(), LEAST_COMPONENTS, self.rounds);
+            let more = set(&self.roots, own.sensors.clone(), LEAST_COMPONENTS, self.rounds);
             if more.cost < own.cost + MARGIN { more } else { own }
         };
         sets.into_par_iter().map(more).collect()
@@ -176,16 +177,4 @@ fn is_mixed(set: &Set, most: f64) -> bool {
 fn sorted(mut sensors: Vec<usize>) -> Vec<usize> {
     sensors.sort_unstable();
     sensors
-}
-
-/// Of the sizes of sets, that of the set which the sensor in the middle is in.
-pub fn middle_of_sensors(mut sizes: Vec<usize>) -> usize {
-    sizes.sort_unstable();
-    let half = sizes.iter().sum::<usize>().div_ceil(2);
-    let mut below = 0;
-    let reaches = |size: &usize| {
-        below += size;
-        below >= half
-    };
-    sizes.into_iter().find(reaches).unwrap_or(0)
 }

@@ -1,7 +1,7 @@
 //! A set of sensors that may be on one part, with their motion, and what it costs.
 //!
 //! The cost of a set is what it takes to tell what its sensors feel up to a tolerance: for each component of its motion half
-//! the logarithm of its variance, and for each root beyond these half that of what is left of it, both over the tolerance
+//! the logarithm of 1 and its variance, and for each root beyond these half that of 1 and what is left of it, both over the tolerance
 //! (the likelihood of probabilistic principal components, Tipping and Bishop 1999; here over roots that tell something), and
 //! half a logarithm of the number of times for each c. Two sets of one part share components, so that one of both costs less.
 
@@ -11,7 +11,7 @@ use crate::numerics::eigen::largest;
 
 /// Sensors of a set that its motion is found from, spread over all.
 pub const MAX_SENSORS: usize = 64;
-/// The share of a sensor's squares that is left unexplained without cost.
+/// What is told of a sensor's squares, as a share of them: what is left beyond costs as noise does, and what is less costs little.
 pub const TOLERANCE: f64 = 0.01;
 
 /// A set of sensors.
@@ -26,27 +26,18 @@ pub struct Set {
     pub cost: f64,
 }
 
-/// A set whose motion is found from its sensors.
-pub fn set(roots: &Roots, sensors: Vec<usize>, rounds: usize) -> Set {
-    best_fit(roots, sensors, 1, rounds)
-}
-
-/// The same, of so many components at least.
-pub fn set_of(roots: &Roots, sensors: Vec<usize>, least: usize, rounds: usize) -> Set {
-    best_fit(roots, sensors, least, rounds)
-}
-
 /// A set of two.
 pub fn union(roots: &Roots, a: &Set, b: &Set, rounds: usize) -> Set {
     let mut sensors = [a.sensors.as_slice(), &b.sensors].concat();
     sensors.sort_unstable();
     // Turns that begin with the motions of both would end where these are, which is no better than from the start, and takes
     // pieces of different parts for one.
-    best_fit(roots, sensors, a.fit.components().max(b.fit.components()), rounds)
+    set(roots, sensors, a.fit.components().max(b.fit.components()), rounds)
 }
 
-/// A set with the number of components, of `least` and more, that makes it cost least.
-fn best_fit(roots: &Roots, sensors: Vec<usize>, least: usize, rounds: usize) -> Set {
+/// A set whose motion is found from its sensors in so many turns, with the number of components, of `least` and more, that makes it
+/// cost least.
+pub fn set(roots: &Roots, sensors: Vec<usize>, least: usize, rounds: usize) -> Set {
     let sample: Vec<usize> = spread(sensors.len(), MAX_SENSORS).map(|at| sensors[at]).collect();
     let own = roots.select(&sample);
     let start = own.start();

@@ -56,7 +56,7 @@ fn a_set_of_two_parts_costs_more_than_both() {
     let own = |parts: &[usize]| {
         (0..truth.len()).filter(|sensor| parts.contains(&truth[*sensor])).collect::<Vec<_>>()
     };
-    let cost = |sensors: &[usize]| set(&roots, sensors.to_vec(), ROUNDS[0]).cost;
+    let cost = |sensors: &[usize]| set(&roots, sensors.to_vec(), 1, ROUNDS[0]).cost;
     assert!(cost(&own(&[1, 2])) > cost(&own(&[1])) + cost(&own(&[2])) + MARGIN);
     // The halves of one part cost more than the whole.
     let (first, second): (Vec<usize>, Vec<usize>) = own(&[2]).into_iter().partition(|sensor| sensor % 2 == 0);
