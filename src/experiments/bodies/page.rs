@@ -25,6 +25,10 @@ const METHODS: [(&str, Right); 7] = [
     ("DPGMM + Prim", |row| row.dpgmm_prim_right),
 ];
 
+/// The same over the narrow panels of the picture.
+const TITLES: [&str; METHODS.len()] =
+    ["parts", "tree", "true\nparts", "nearest", "Chow–\nLiu", "DPGMM\n-LJ", "DPGMM\n+ Prim"];
+
 /// The picture, in the folder of the study.
 pub const PICTURE: &str = "figures/bodies.svg";
 
@@ -46,12 +50,8 @@ impl Page<'_> {
 
     /// The picture: how often each method is right, of each recording at each p.
     pub fn picture(&self) -> (Vec<Column>, Vec<Line>) {
-        let column = |(name, _): &(&str, Right)| Column {
-            title: name.replacen(' ', "\n", 1),
-            share: true,
-            published: None,
-            accepted: None,
-        };
+        let column =
+            |title: &str| Column { title: title.to_owned(), share: true, published: None, accepted: None };
         let cell = |rows: &[&Row], right: Right| -> Cell {
             let rate = rate(rows.iter().filter(|row| right(row)).count(), rows.len());
             Some((rate.value?, rate.interval))
@@ -71,7 +71,7 @@ impl Page<'_> {
             .coordinations
             .iter()
             .flat_map(|&p| recordings.iter().map(move |recording| line(p, recording)));
-        (METHODS.iter().map(column).collect(), lines.collect())
+        (TITLES.map(column).to_vec(), lines.collect())
     }
 
     /// The page.
