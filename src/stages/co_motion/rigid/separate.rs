@@ -37,9 +37,12 @@ impl Search<'_> {
         let is_large = |set: &Set| set.sensors.len() >= small;
         let is_part = |set: &Set| is_large(set) || says(set, LEAST_COMPONENTS, set.fit.components() as f64);
         let pieces = self.told_by_three(self.sets(pieces, sets));
-        let (mut parts, pieces): (Vec<Set>, Vec<Set>) = pieces.into_iter().partition(is_large);
-        let (faces, loose): (Vec<Set>, Vec<Set>) =
-            pieces.into_iter().partition(|set| says(set, LEAST_OF_FACE, SUPPORT));
+        // A large face that hardly feels how its part turns may still share that with the rest of it.
+        let is_face = |set: &Set| says(set, LEAST_OF_FACE, SUPPORT);
+        let is_whole =
+            |set: &Set| is_large(set) && (set.fit.components() > LEAST_COMPONENTS || !is_face(set));
+        let (mut parts, pieces): (Vec<Set>, Vec<Set>) = pieces.into_iter().partition(is_whole);
+        let (faces, loose): (Vec<Set>, Vec<Set>) = pieces.into_iter().partition(is_face);
         let sensors: Vec<usize> = loose.iter().flat_map(|set| set.sensors.iter().copied()).collect();
         let mut loose = self.sets(alike(&self.roots, &sorted(sensors)), loose);
         // Faces that say enough find their part, or become one, by what sets cost.
