@@ -1,5 +1,7 @@
 //! Test that parts are found from touch on a simulated body.
 
+use rand::RngExt;
+
 use super::*;
 use crate::numerics::partition::adjusted_rand_index;
 use crate::numerics::rng::stream;
@@ -61,4 +63,39 @@ fn a_set_of_two_parts_costs_more_than_both() {
     // The halves of one part cost more than the whole.
     let (first, second): (Vec<usize>, Vec<usize>) = own(&[2]).into_iter().partition(|sensor| sensor % 2 == 0);
     assert!(cost(&own(&[2])) + MARGIN < cost(&first) + cost(&second));
+}
+
+#[test]
+fn a_large_face_joins_the_part_that_it_shares_numbers_with() {
+    // Sides of two cylinders that feel four numbers of their motion each, and both ends of the first, as many sensors, that feel two
+    // of these and one of their own.
+    const TIMES: usize = 600;
+    let mut rng = stream(4, 1, "rigid", 0);
+    let mut uniform =
+        |count: usize| -> Vec<f64> { (0..count).map(|_| rng.random_range(-1.0..1.0)).collect() };
+    let motions = [uniform(5 * TIMES), uniform(5 * TIMES)];
+    let mut series = Vec::new();
+    for sensor in 0..120 {
+        let mut c = uniform(4);
+        let end = if sensor % 2 == 0 { 1.0 } else { -1.0 };
+        c = if (40..80).contains(&sensor) {
+            vec![0.0, 0.0, 0.4 * c[2], 0.4 * c[3], end]
+        } else {
+            [c, vec![0.0]].concat()
+        };
+        let reach = |w: &[f64]| w.iter().zip(&c).map(|(w, c)| w * c).sum::<f64>();
+        let felt = motions[sensor / 80].chunks(5).map(|w| reach(w).max(0.0).powi(2) as f32);
+        series.push(felt.collect::<Vec<f32>>());
+    }
+    let series: Vec<&[f32]> = series.iter().map(Vec::as_slice).collect();
+    let times: Vec<usize> = (0..TIMES).collect();
+    let roots = Roots::at(&series, &times, false).normalised();
+    let search =
+        Search { roots, distances: &Distances { sensors: 0, values: Vec::new() }, rounds: ROUNDS[1] };
+    let thirds = [0, 40, 80].map(|first| (first..first + 40).collect::<Vec<usize>>());
+    let (parts, loose) = search.separated(search.sets(thirds.to_vec(), Vec::new()));
+    let mut found: Vec<Vec<usize>> = parts.into_iter().map(|part| part.sensors).collect();
+    found.sort();
+    assert_eq!(found, [(0..80).collect::<Vec<usize>>(), (80..120).collect()]);
+    assert!(loose.is_empty());
 }
