@@ -1,4 +1,4 @@
-//! Planar parts in a row, for tests.
+//! Planar parts in a row, and what sensors feel, for tests.
 
 use rand::RngExt;
 
@@ -31,4 +31,10 @@ pub fn row(parts: usize, samples: usize) -> (Vec<Motion>, Vec<Motion>) {
         values.into_iter().map(|values| Motion { components, values }).collect()
     };
     (motions(across, 2), motions(along, 1))
+}
+
+/// The pressures on a sensor that feels what c says of w, numbers by time.
+pub fn felt<'a>(w: &'a [f64], c: &'a [f64]) -> impl Iterator<Item = f32> + 'a {
+    let reach = move |w: &[f64]| w.iter().zip(c).map(|(w, c)| w * c).sum::<f64>();
+    w.chunks(c.len()).map(move |w| reach(w).max(0.0).powi(2) as f32)
 }

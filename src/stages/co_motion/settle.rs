@@ -189,15 +189,9 @@ fn trusted(parts: &RigidParts) -> Vec<bool> {
 mod tests {
     use rand::RngExt;
 
-    use super::super::fixtures::row;
+    use super::super::fixtures::{felt, row};
     use super::*;
     use crate::numerics::rng::stream;
-
-    /// The pressures on a sensor that feels what c says of w, numbers by time.
-    fn felt<'a>(w: &'a [f64], c: &'a [f64]) -> impl Iterator<Item = f32> + 'a {
-        let reach = move |w: &[f64]| w.iter().zip(c).map(|(w, c)| w * c).sum::<f64>();
-        w.chunks(c.len()).map(move |w| reach(w).max(0.0).powi(2) as f32)
-    }
 
     /// Two parts of sensors that feel four numbers of their own, and more single sensors than the joints are asked for.
     fn many_singles() -> (Tactile, RigidParts) {

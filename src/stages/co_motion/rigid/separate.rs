@@ -2,8 +2,8 @@
 //!
 //! The motion of a loose set, such as the ends of a cylinder, does not say which part it is on, so that the search gives it to any.
 //! Where one motion explains all sensors of a set, what its faces say of this motion tells which share some. Where it does not, the set
-//! may be a mixture of faces of several parts, and falls apart if its pieces cost less. Large pieces are parts; others find a part, or
-//! each other, by what sets cost, or are loose.
+//! may be a mixture of faces of several parts, and falls apart if its pieces cost less. Large pieces that feel how they
+//! turn are parts; others find a part, or each other, by what sets cost. What finds none is a part if it is large, or else loose.
 
 use nalgebra::DMatrix;
 use rayon::prelude::*;

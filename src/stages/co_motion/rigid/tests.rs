@@ -1,7 +1,8 @@
-//! Test that parts are found from touch on a simulated body.
+//! Test that parts are found from touch.
 
 use rand::RngExt;
 
+use super::super::fixtures::felt;
 use super::*;
 use crate::numerics::partition::adjusted_rand_index;
 use crate::numerics::rng::stream;
@@ -74,24 +75,19 @@ fn a_large_face_joins_the_part_that_it_shares_numbers_with() {
     let mut uniform =
         |count: usize| -> Vec<f64> { (0..count).map(|_| rng.random_range(-1.0..1.0)).collect() };
     let motions = [uniform(5 * TIMES), uniform(5 * TIMES)];
-    let mut series = Vec::new();
-    for sensor in 0..120 {
-        let mut c = uniform(4);
-        let end = if sensor % 2 == 0 { 1.0 } else { -1.0 };
-        c = if (40..80).contains(&sensor) {
-            vec![0.0, 0.0, 0.4 * c[2], 0.4 * c[3], end]
-        } else {
-            [c, vec![0.0]].concat()
-        };
-        let reach = |w: &[f64]| w.iter().zip(&c).map(|(w, c)| w * c).sum::<f64>();
-        let felt = motions[sensor / 80].chunks(5).map(|w| reach(w).max(0.0).powi(2) as f32);
-        series.push(felt.collect::<Vec<f32>>());
-    }
-    let series: Vec<&[f32]> = series.iter().map(Vec::as_slice).collect();
-    let times: Vec<usize> = (0..TIMES).collect();
-    let roots = Roots::at(&series, &times, false).normalised();
-    let search =
-        Search { roots, distances: &Distances { sensors: 0, values: Vec::new() }, rounds: ROUNDS[1] };
+    let sensor = |sensor: usize| {
+        let [a, b, c, d] = [0; 4].map(|_| uniform(1)[0]);
+        let end = if sensor.is_multiple_of(2) { 1.0 } else { -1.0 };
+        let c =
+            if (40..80).contains(&sensor) { [0.0, 0.0, 0.4 * c, 0.4 * d, end] } else { [a, b, c, d, 0.0] };
+        felt(&motions[sensor / 80], &c).collect::<Vec<f32>>()
+    };
+    let series: Vec<Vec<f32>> = (0..120).map(sensor).collect();
+    let series = series.iter().map(Vec::as_slice).collect();
+    let distances = &Distances { sensors: 0, values: Vec::new() };
+    let body = Body { series, signed: false, distances };
+    let [every, times] = [120, TIMES].map(|count| (0..count).collect::<Vec<usize>>());
+    let search = Search { roots: body.roots(&every, &times), distances, rounds: ROUNDS[1] };
     let thirds = [0, 40, 80].map(|first| (first..first + 40).collect::<Vec<usize>>());
     let (parts, loose) = search.separated(search.sets(thirds.to_vec(), Vec::new()));
     let mut found: Vec<Vec<usize>> = parts.into_iter().map(|part| part.sensors).collect();
