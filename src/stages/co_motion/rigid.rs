@@ -27,7 +27,7 @@ pub const MIN_SENSORS: usize = 2 * PIECES[0];
 /// Most pieces.
 const MAX_PIECES: usize = 100;
 /// Times that are read: for the many pieces, and for the few parts.
-const TIMES: [usize; 2] = [500, 2000];
+const TIMES: [usize; 2] = [250, 2000];
 /// Times, for each that is read, that it is chosen from, spread over all.
 const CHOICE: usize = 4;
 /// The share of squares that a motion must leave, of roots beyond its components, so that a part may be several.
@@ -35,11 +35,11 @@ const UNEXPLAINED: f64 = 0.05;
 /// What a sensor, or a set, may leave of its squares over what the one in the middle leaves.
 const TIMES_THE_MIDDLE: f64 = 3.0;
 /// Turns in which the motion of a set is found: of the many pieces, and of the few parts.
-const ROUNDS: [usize; 2] = [6, 16];
+const ROUNDS: [usize; 2] = [4, 16];
 /// Turns in which the motion of the body as a whole is found.
 const FEW_ROUNDS: usize = 3;
 /// Sets that a set is tried with, the nearest: of the many pieces, and of the few parts.
-const NEAR: [usize; 2] = [6, 3];
+const NEAR: [usize; 2] = [4, 3];
 /// What one set of two must cost less than both, for each time: it must be seen that they share a component.
 const MARGIN: f64 = 1.0;
 /// Roots beyond its components that a part must have at a time, on the mean. With fewer, any sensors fit.

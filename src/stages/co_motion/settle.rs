@@ -32,7 +32,7 @@ const MAX_SETS: usize = 40;
 ///
 /// In: M × T pressures, of any sign, and the parts and loose sets of their sensors. Out: parts without loose sets, and their tree.
 pub fn settle(tactile: &Tactile, mut parts: RigidParts, rng: &mut impl Rng) -> (RigidParts, CoMotion) {
-    let body = Body::new(tactile);
+    let mut body = Body::new(tactile);
     let (mut settled, names, motions) = loop {
         let mut settled = parts.clone();
         let (names, motions) = body.settled(&mut settled);
@@ -82,6 +82,8 @@ struct Body<'a> {
     series: Vec<&'a [f32]>,
     signed: bool,
     roots: Roots,
+    /// The motions that were found, by their sensors: from turn to turn most stay the same.
+    known: BTreeMap<Vec<usize>, Motion>,
 }
 
 impl<'a> Body<'a> {
@@ -89,7 +91,7 @@ impl<'a> Body<'a> {
         let series: Vec<&[f32]> = tactile.series().collect();
         let times: Vec<usize> = spread(tactile.samples, TIMES).collect();
         let signed = is_signed(tactile);
-        Self { roots: Roots::at(&series, &times, signed), signed, series }
+        Self { roots: Roots::at(&series, &times, signed), signed, series, known: BTreeMap::new() }
     }
 
     /// T.
@@ -97,21 +99,24 @@ impl<'a> Body<'a> {
         self.series.first().map_or(0, |series| series.len())
     }
 
-    fn motions<'b>(&self, sets: impl Iterator<Item = &'b Vec<usize>>) -> Vec<Motion> {
-        let own = |sensors: &Vec<usize>| -> Vec<&[f32]> {
-            sensors.iter().map(|&sensor| self.series[sensor]).collect()
+    fn motions(&mut self, sets: &[&Vec<usize>]) -> Vec<Motion> {
+        let found = |sensors: &Vec<usize>| {
+            let series: Vec<&[f32]> = sensors.iter().map(|&sensor| self.series[sensor]).collect();
+            (sensors.clone(), motion(&series, None, self.signed))
         };
-        let sets: Vec<Vec<&[f32]>> = sets.map(own).collect();
-        sets.par_iter().map(|series| motion(series, None, self.signed)).collect()
+        let new = sets.par_iter().filter(|sensors| !self.known.contains_key(**sensors));
+        let new: Vec<(Vec<usize>, Motion)> = new.map(|sensors| found(sensors)).collect();
+        self.known.extend(new);
+        sets.iter().map(|sensors| self.known[*sensors].clone()).collect()
     }
 
     /// The parts, with the loose sets that are on them, and their motions.
-    fn settled(&self, parts: &mut RigidParts) -> (Vec<usize>, Vec<Motion>) {
+    fn settled(&mut self, parts: &mut RigidParts) -> (Vec<usize>, Vec<Motion>) {
         let (known, sets) = parts_and_sets(parts);
         let (sets, rest) = largest(sets);
-        let mut motions = self.motions(known.values());
+        let mut motions = self.motions(&known.values().collect::<Vec<_>>());
         let mut names: Vec<usize> = known.into_keys().collect();
-        let of_sets = self.motions(sets.values());
+        let of_sets = self.motions(&sets.values().collect::<Vec<_>>());
         let members: Vec<&[usize]> = sets.values().map(Vec::as_slice).collect();
         let found = owners(&motions, &of_sets, &opposites(&self.roots, &members), self.samples());
         if names.is_empty() {

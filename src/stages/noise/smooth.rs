@@ -16,16 +16,24 @@ const LIMIT: [f64; 2] = [0.5, 3.5];
 /// Puts lines in the place of pressures, and 0 where they are within the noise. `size` is the middle of the sizes of second differences.
 pub fn smooth(series: &mut [f32], size: f32) {
     let size = f64::from(size);
-    let lines = Lines::new(series);
-    let reaches = REACHES.into_iter().filter(|reach| 2 * reach < series.len());
-    let found = |t: usize| {
-        let line = reaches.clone().find_map(|reach| lines.through(t, reach, FITS * size * size));
-        let line = line.unwrap_or(Line { value: f64::from(series[t]), left: 0.0, gain: 1.0 });
-        let limit = size * (LIMIT[0] + LIMIT[1] * line.gain.sqrt());
-        if line.value.abs() < limit { 0.0 } else { line.value as f32 }
-    };
-    let found: Vec<f32> = (0..series.len()).map(found).collect();
-    series.copy_from_slice(&found);
+    let sums = sums(series);
+    let stretches = REACHES.map(Stretches::new);
+    let limit = |line: &Line| size * (LIMIT[0] + LIMIT[1] * line.deviation);
+    for (t, pressure) in series.iter_mut().enumerate() {
+        let line = stretches.iter().find_map(|around| around.line(&sums, t, FITS * size * size));
+        let line = line.unwrap_or(Line { value: f64::from(*pressure), left: 0.0, deviation: 1.0 });
+        *pressure = if line.value.abs() < limit(&line) { 0.0 } else { line.value as f32 };
+    }
+}
+
+/// Up to each time, the sums of pressures, of pressures times their time, and of their squares.
+fn sums(series: &[f32]) -> Vec<[f64; 3]> {
+    let mut sums = vec![[0.0; 3]];
+    for (t, pressure) in series.iter().enumerate() {
+        let (pressure, [a, b, c]) = (f64::from(*pressure), sums[t]);
+        sums.push([a + pressure, b + pressure * t as f64, c + pressure * pressure]);
+    }
+    sums
 }
 
 /// A line at a time.
@@ -33,53 +41,71 @@ struct Line {
     value: f64,
     /// Squares that it leaves, for each degree of freedom.
     left: f64,
-    /// Variance of the value over that of the noise.
-    gain: f64,
+    /// Standard deviation of the value over that of the noise.
+    deviation: f64,
 }
 
-/// Lines through stretches of a series.
-struct Lines {
-    /// Up to each time, the sums of pressures, of pressures times their time, and of their squares.
-    sums: Vec<[f64; 3]>,
+/// The stretches of one reach: around a time, before it, and after it.
+struct Stretches {
+    reach: usize,
+    around: Stretch,
+    before: Stretch,
+    after: Stretch,
 }
 
-impl Lines {
-    fn new(series: &[f32]) -> Self {
-        let mut sums = vec![[0.0; 3]];
-        for (t, pressure) in series.iter().enumerate() {
-            let (pressure, [a, b, c]) = (f64::from(*pressure), sums[t]);
-            sums.push([a + pressure, b + pressure * t as f64, c + pressure * pressure]);
-        }
-        Self { sums }
+impl Stretches {
+    fn new(reach: usize) -> Self {
+        let [around, before, after] = [(reach, reach), (reach, 0), (0, reach)].map(Stretch::new);
+        Self { reach, around, before, after }
     }
 
     /// The line around a time that leaves little enough; else, of the one before it and the one after it, the better one that does.
-    fn through(&self, t: usize, reach: usize, most: f64) -> Option<Line> {
-        let end = t + reach + 1;
-        if t < reach || end >= self.sums.len() {
+    fn line(&self, sums: &[[f64; 3]], t: usize, most: f64) -> Option<Line> {
+        if t < self.reach || t + self.reach + 1 >= sums.len() {
             return None;
         }
-        let around = self.line(t - reach, end, t);
+        let around = self.around.line(sums, t);
         if around.left <= most {
             return Some(around);
         }
-        let (before, after) = (self.line(t - reach, t + 1, t), self.line(t, end, t));
+        let (before, after) = (self.before.line(sums, t), self.after.line(sums, t));
         Some(if before.left < after.left { before } else { after }).filter(|line| line.left <= most)
     }
+}
 
-    /// The line of least squares through the times of a stretch, at one of them.
-    fn line(&self, from: usize, to: usize, t: usize) -> Line {
-        let count = (to - from) as f64;
-        let [a, b, c] = [0, 1, 2].map(|at| self.sums[to][at] - self.sums[from][at]);
-        let centre = 0.5 * (from + to - 1) as f64;
+/// What lines through as many times before and after the time that counts have in common: products are quicker than quotients.
+struct Stretch {
+    /// Times before and after.
+    sides: (usize, usize),
+    /// From the time in the middle to the one that counts.
+    off: f64,
+    /// 1 over the number of times.
+    share: f64,
+    /// The sum of squares of times about their middle, and 1 over it.
+    spread: [f64; 2],
+    /// 1 over the degrees of freedom that a line leaves.
+    freedom: f64,
+    deviation: f64,
+}
+
+impl Stretch {
+    fn new(sides: (usize, usize)) -> Self {
+        let count = (sides.0 + sides.1 + 1) as f64;
         let spread = count * (count * count - 1.0) / 12.0;
-        let slope = (b - a * centre) / spread;
-        let off = t as f64 - centre;
-        Line {
-            value: a / count + slope * off,
-            left: (c - a * a / count - slope * slope * spread).max(0.0) / (count - 2.0),
-            gain: 1.0 / count + off * off / spread,
-        }
+        let off = 0.5 * (sides.0 as f64 - sides.1 as f64);
+        let deviation = (1.0 / count + off * off / spread).sqrt();
+        let [share, freedom] = [1.0 / count, 1.0 / (count - 2.0)];
+        Self { sides, off, share, spread: [spread, 1.0 / spread], freedom, deviation }
+    }
+
+    /// The line of least squares, at the time that counts.
+    fn line(&self, sums: &[[f64; 3]], t: usize) -> Line {
+        let (from, to) = (sums[t - self.sides.0], sums[t + self.sides.1 + 1]);
+        let [a, b, c] = [to[0] - from[0], to[1] - from[1], to[2] - from[2]];
+        let mean = a * self.share;
+        let slope = (b - a * (t as f64 - self.off)) * self.spread[1];
+        let left = c - a * mean - slope * slope * self.spread[0];
+        Line { value: mean + slope * self.off, left: left.max(0.0) * self.freedom, deviation: self.deviation }
     }
 }
 
