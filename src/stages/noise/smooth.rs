@@ -85,6 +85,7 @@ struct Stretch {
     spread: [f64; 2],
     /// 1 over the degrees of freedom that a line leaves.
     freedom: f64,
+    /// As of a [`Line`].
     deviation: f64,
 }
 
