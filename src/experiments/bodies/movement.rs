@@ -8,7 +8,7 @@ use super::peers;
 use crate::analysis::estimate::estimate;
 use crate::numerics::rng::stream;
 use crate::settings::Settings;
-use crate::stages::co_motion::co_motion;
+use crate::stages::co_motion::co_motion_tree;
 use crate::stages::distance::information_metric;
 use crate::stages::evaluate::{joins, parts, parts_match, score};
 use crate::stages::noise::above_noise;
@@ -150,7 +150,7 @@ impl Movement<'_> {
         let estimated = estimate(&tactile, levels, &mut rng, &|| ());
         let (labels, tree) = (&estimated.parts.labels, &estimated.tree);
         let given: Vec<Option<usize>> = truth.labels.iter().copied().map(Some).collect();
-        let tree_of_true_parts = co_motion(&tactile, &given, None, &mut rng).tree;
+        let tree_of_true_parts = co_motion_tree(&tactile, &given);
         let symbols = quantise(&tactile, levels);
         let distances = information_metric(&symbols);
         let [nearest, chow_liu] = peers::trees(labels, &distances, &symbols);

@@ -70,6 +70,11 @@ impl Moments {
         sum
     }
 
+    /// The [`correlations`] over all blocks.
+    pub fn of_all(&self) -> DMatrix<f64> {
+        self.correlations(&self.sum(&vec![1; self.blocks()]))
+    }
+
     /// The [`correlations`] from a sum of these moments.
     pub fn correlations(&self, sum: &DMatrix<f64>) -> DMatrix<f64> {
         correlations(sum, &self.starts)

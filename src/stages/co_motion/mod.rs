@@ -27,4 +27,4 @@ pub use self::joint_speed::{Moments, correlations};
 pub use self::motion::{Motion, is_signed, spread};
 pub use self::rigid::{MIN_SENSORS, RigidParts, rigid_parts};
 pub use self::settle::settle;
-pub use self::tree::{CoMotion, Pair, co_motion};
+pub use self::tree::{CoMotion, Pair, co_motion, co_motion_tree};

@@ -62,6 +62,23 @@ pub fn co_motion(
     components: Option<usize>,
     rng: &mut impl Rng,
 ) -> CoMotion {
+    let (parts, motions) = parts_and_motions(tactile, labels, components);
+    joined(&parts, &motions, tactile.samples, rng)
+}
+
+/// The tree of [`co_motion`] without its confidences, which take longest of a short recording.
+pub fn co_motion_tree(tactile: &Tactile, labels: &[Option<usize>]) -> Vec<Edge> {
+    let (parts, motions) = parts_and_motions(tactile, labels, None);
+    let moments = Moments::new(&motions, tactile.samples, blocks(tactile.samples));
+    named(&spanning(&moments.of_all()), &parts)
+}
+
+/// The labels of the parts, rising, and what each feels of its motion.
+fn parts_and_motions(
+    tactile: &Tactile,
+    labels: &[Option<usize>],
+    components: Option<usize>,
+) -> (Vec<usize>, Vec<Motion>) {
     assert_eq!(labels.len(), tactile.sensors(), "a part for each sensor");
     let signed = is_signed(tactile);
     let known: Vec<usize> = labels.iter().copied().flatten().collect();
@@ -74,15 +91,24 @@ pub fn co_motion(
         None => whole_motion(&series(part), signed),
         given => motion(&series(part), given, signed),
     };
-    let motions: Vec<Motion> = parts.iter().map(|&part| own(part)).collect();
-    joined(&parts, &motions, tactile.samples, rng)
+    let motions = parts.iter().map(|&part| own(part)).collect();
+    (parts, motions)
+}
+
+/// Blocks of so many times.
+fn blocks(samples: usize) -> usize {
+    (samples / BLOCK_SAMPLES).clamp(2, BLOCKS)
+}
+
+/// A tree over places in a list, over what is there.
+fn named(tree: &[Edge], parts: &[usize]) -> Vec<Edge> {
+    tree.iter().map(|edge| Edge { child: parts[edge.child], parent: parts[edge.parent] }).collect()
 }
 
 /// The tree over parts with these labels, rising, from their motions at the same times.
 pub fn joined(parts: &[usize], motions: &[Motion], samples: usize, rng: &mut impl Rng) -> CoMotion {
-    let blocks = (samples / BLOCK_SAMPLES).clamp(2, BLOCKS);
-    let moments = Moments::new(motions, samples, blocks);
-    let agreement = moments.correlations(&moments.sum(&vec![1; moments.blocks()]));
+    let moments = Moments::new(motions, samples, blocks(samples));
+    let agreement = moments.of_all();
     let tree = spanning(&agreement);
     let mut joined = DMatrix::<usize>::zeros(parts.len(), parts.len());
     for edge in resampled(&moments, rng).iter().flatten() {
@@ -104,7 +130,7 @@ pub fn joined(parts: &[usize], motions: &[Motion], samples: usize, rng: &mut imp
     };
     CoMotion {
         pairs: pairs.map(pair).collect(),
-        tree: tree.iter().map(|edge| Edge { child: parts[edge.child], parent: parts[edge.parent] }).collect(),
+        tree: named(&tree, parts),
         parts: parts.iter().zip(motions).map(|(&part, motion)| (part, motion.components)).collect(),
     }
 }
@@ -179,6 +205,7 @@ mod tests {
             let sum: f64 = found.pairs.iter().map(|pair| pair.confidence).sum();
             assert!((sum - 4.0).abs() < 1e-9, "every resampled tree has four edges");
             assert!(found.tree.iter().all(|edge| found.confidence(edge) > 0.5));
+            assert_eq!(co_motion_tree(&tactile, &known(&agent)), found.tree);
             assert!(found.parts.iter().all(|(_, components)| (3..=5).contains(components)));
         }
     }
