@@ -246,13 +246,16 @@ impl Study {
 /// How often parts and tree are found on any body, beside other methods (not in the paper).
 ///
 /// Writes into DIR: recordings.csv (a row for each recording), edges.csv (a row for each edge of each estimated tree) and
-/// bodies.md. Start it again to go on where it was. Each thread holds one movement: 0.4 GB for 840 sensors and 100,000
-/// samples.
+/// bodies.md. Start it again to go on where it was, or, with more movements, from those in checkpoints/. Each thread holds one
+/// movement: 0.4 GB for 840 sensors and 100,000 samples.
 #[derive(Args)]
 pub struct Bodies {
     /// Design, such as reproduce/bodies.toml; its bodies are files from its folder
     #[arg(long, value_name = "FILE")]
     design: PathBuf,
+    /// Movements of each body at each p, in place of those of the design
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    movements: Option<u32>,
     #[command(flatten)]
     threads: Threads,
     /// Folder to write to
@@ -265,7 +268,10 @@ impl Bodies {
     pub fn run(self) -> Result<ExitCode> {
         self.threads.apply()?;
         let text = read_toml(&self.design)?;
-        let design = bodies::Design::parse(&text, &self.design)?;
+        let mut design = bodies::Design::parse(&text, &self.design)?;
+        if let Some(movements) = self.movements {
+            design.movements = movements as usize;
+        }
         prepare_folder(&self.out)?;
         bodies::study(&design, &text, &self.design, &self.out)?;
         say(format!("All files are in {}; open bodies.md there.", self.out.display()))?;

@@ -1,5 +1,7 @@
 //! Describe the study of bodies for people.
 
+use std::collections::BTreeSet;
+
 use super::design::{Design, Recording};
 use super::movement::{EdgeRow, Row};
 use crate::analysis::published::Unit;
@@ -8,8 +10,15 @@ use crate::report::markdown::{row, rule};
 use crate::report::numbers;
 use crate::report::plot::effects::{Cell, Column, Line};
 
-/// Lower ends of the bins of confidence.
-const BINS: [f64; 6] = [0.0, 0.5, 0.8, 0.95, 0.99, 1.0];
+/// Bins of confidence: from where on, and up to where.
+const BINS: [(f64, Option<f64>); 6] = [
+    (0.0, Some(0.5)),
+    (0.5, Some(0.8)),
+    (0.8, Some(0.95)),
+    (0.95, Some(0.99)),
+    (0.99, Some(1.0)),
+    (1.0, None),
+];
 
 /// Whether a row is right in some respect.
 type Right = fn(&Row) -> bool;
@@ -76,7 +85,7 @@ impl Page<'_> {
 
     /// The page.
     pub fn text(&self) -> String {
-        let &Self { design, rows, edges } = self;
+        let &Self { design, rows, .. } = self;
         let mut lines = vec![
         "# Parts and tree of any body\n".to_owned(),
         about(design, rows),
@@ -124,12 +133,47 @@ impl Page<'_> {
             lines.push(row(first.into_iter().chain(design.coordinations.iter().map(at))));
         }
         lines.push("\n## Are the confidences right?\n".to_owned());
-        lines.push("All edges of all estimated trees, by their confidence.\n".to_owned());
-        lines.push(row(["confidence", "edges", "mean confidence", "right"]));
-        lines.push(rule(4));
-        lines.extend(calibration(edges));
+        lines.push(
+            "All edges of all estimated trees, by their confidence: mean confidence, share that is right, 95 % interval (Wilson), and \
+             how many there are. A confidence is that of an edge if the parts are right: other times of the same recording do not \
+             show that they are not. So edges over parts that are right and over parts that are not count apart. An edge is right if \
+             it joins parts that are joined, each estimated part being that of most of its sensors.\n"
+                .to_owned(),
+        );
+        let bins = BINS.map(|(low, high)| match high {
+            None => "100 %".to_owned(),
+            Some(high) => format!("{} to {} %", numbers::percent(low), numbers::percent(high)),
+        });
+        lines.push(row(["T", "noise", "parts"].map(str::to_owned).into_iter().chain(bins)));
+        lines.push(rule(3 + BINS.len()));
+        for recording in &design.recordings {
+            lines.extend([true, false].map(|parts_right| self.calibration(recording, parts_right)));
+        }
         lines.push(String::new());
         lines.join("\n")
+    }
+
+    /// How often edges of these recordings are right, by their confidence.
+    fn calibration(&self, recording: &Recording, parts_right: bool) -> String {
+        let of_row = |row: &Row| (row.body.clone(), row.coordination.to_bits(), row.movement);
+        let of_edge = |edge: &EdgeRow| (edge.body.clone(), edge.coordination.to_bits(), edge.movement);
+        let Recording { samples, noise } = *recording;
+        let recordings: BTreeSet<_> = self
+            .rows
+            .iter()
+            .filter(|row| (row.samples, row.noise, row.parts_right) == (samples, noise, parts_right))
+            .map(of_row)
+            .collect();
+        let edges: Vec<&EdgeRow> = self
+            .edges
+            .iter()
+            .filter(|edge| {
+                (edge.samples, edge.noise) == (samples, noise) && recordings.contains(&of_edge(edge))
+            })
+            .collect();
+        let parts = if parts_right { "right" } else { "wrong" };
+        let first = [samples.to_string(), noise.to_string(), parts.to_owned()];
+        row(first.into_iter().chain(BINS.map(|(low, high)| bin(&edges, low, high))))
     }
 }
 
@@ -142,12 +186,13 @@ fn about(design: &Design, rows: &[Row]) -> String {
             rows.len()
         ),
     };
+    // A study may have run fewer or more than the design says.
+    let movements = rows.iter().map(|row| row.movement).max().unwrap_or(0);
     format!(
-        "{} bodies; movements of each at each p: {}; seed {}; chains of each mixture: {}. {resolved} `reproduce/bodies.sh` makes \
+        "{} bodies; movements of each at each p: {movements}; seed {}; chains of each mixture: {}. {resolved} `reproduce/bodies.sh` makes \
          this page; each recording is a row of [recordings.csv](recordings.csv), each edge of [edges.csv](edges.csv). How it \
          works: `docs/co-motion.md`.",
         design.bodies.len(),
-        design.movements,
         design.seed,
         design.chains
     )
@@ -179,22 +224,12 @@ fn written(right: usize, n: usize) -> String {
     }
 }
 
-fn calibration(edges: &[EdgeRow]) -> Vec<String> {
-    let bin = |(at, &low): (usize, &f64)| {
-        let high = BINS.get(at + 1).copied();
-        let within =
-            |edge: &&EdgeRow| edge.confidence >= low && high.is_none_or(|high| edge.confidence < high);
-        let own: Vec<&EdgeRow> = edges.iter().filter(within).collect();
-        let confidences: Vec<f64> = own.iter().map(|edge| edge.confidence).collect();
-        let name = high.map_or("100 %".to_owned(), |high| {
-            format!("{} to {} %", numbers::percent(low), numbers::percent(high))
-        });
-        row([
-            name,
-            own.len().to_string(),
-            numbers::value(mean(&confidences).value, Some(Unit::Rate)),
-            written(own.iter().filter(|edge| edge.right).count(), own.len()),
-        ])
-    };
-    BINS.iter().enumerate().map(bin).collect()
+/// Of the edges of some confidence: its mean, the share that is right, and how many there are.
+fn bin(edges: &[&EdgeRow], low: f64, high: Option<f64>) -> String {
+    let within = |edge: &&&EdgeRow| edge.confidence >= low && high.is_none_or(|high| edge.confidence < high);
+    let own: Vec<&EdgeRow> = edges.iter().filter(within).copied().collect();
+    let confidences: Vec<f64> = own.iter().map(|edge| edge.confidence).collect();
+    let Some(confidence) = mean(&confidences).value else { return "–".to_owned() };
+    let right = written(own.iter().filter(|edge| edge.right).count(), own.len());
+    format!("{} → {right} of {}", numbers::value(Some(confidence), Some(Unit::Rate)), own.len())
 }

@@ -25,7 +25,8 @@ const PAGE: &str = "bodies.md";
 /// Runs the study, and writes into `out`: recordings.csv, edges.csv, design.toml and manifest.json, and, by [`redraw`], bodies.md and
 /// figures/bodies.svg.
 ///
-/// A study that was interrupted goes on from the movements that it finished.
+/// A study that was interrupted goes on from the movements that it finished, and so does one of more movements: what each gave
+/// stays in the folder checkpoints.
 ///
 /// # Errors
 /// If a body or the settings cannot be used, a movement is unstable, or a file cannot be written.
@@ -82,9 +83,7 @@ pub fn study(design: &Design, text: &str, path: &Path, out: &Path) -> Result<(),
     folder.write_rows(EDGES, &edges)?;
     folder.write_text(COPY, text)?;
     folder.write_manifest(Manifest::of_study("bodies", design.seed))?;
-    redraw(out)?;
-    checkpoints.clear()?;
-    Ok(())
+    redraw(out)
 }
 
 /// Whether a folder holds a finished study of bodies.
