@@ -108,21 +108,33 @@ fn the_study_of_bodies_repeats_itself_and_names_mistakes() {
     let chain = Path::new(env!("CARGO_MANIFEST_DIR")).join("bodies/chain-3.toml");
     let design = |coordinations: &str| {
         format!(
-            "seed = 4\nmovements = 1\nchains = 2\ncoordinations = {coordinations}\nbodies = [{chain:?}]\n\
+            "seed = 4\nmovements = 2\nchains = 2\ncoordinations = {coordinations}\nbodies = [{chain:?}]\n\
              [[recording]]\nsamples = 1000\nnoise = 0.0\n[[recording]]\nsamples = 500\nnoise = 0.1\n"
         )
     };
-    let study = |name: &str, out: &str| {
+    let study = |name: &str, out: &str, more: &[&str]| {
         let mut command = Command::new(env!("CARGO_BIN_EXE_bodyschema"));
-        command.current_dir(&folder).args(["bodies", "--design", name, "--out", out]).output().unwrap()
+        command
+            .current_dir(&folder)
+            .args(["bodies", "--design", name, "--out", out])
+            .args(more)
+            .output()
+            .unwrap()
     };
     fs::write(at("bodies.toml"), design("[0.0, 0.5]")).unwrap();
-    let output = study("bodies.toml", "whole");
+    let output = study("bodies.toml", "whole", &[]);
     assert!(output.status.success(), "{output:?}");
     let page = fs::read_to_string(at("whole/bodies.md")).unwrap();
-    assert!(page.contains("| chain-3 | 3 | ") && page.contains("| 0.5 | 500 | 0.1 | 1 |"), "{page}");
-    assert_eq!(fs::read_to_string(at("whole/recordings.csv")).unwrap().lines().count(), 5);
-    assert!(study("bodies.toml", "again").status.success());
+    assert!(page.contains("| chain-3 | 3 | ") && page.contains("| 0.5 | 500 | 0.1 | 2 |"), "{page}");
+    assert_eq!(fs::read_to_string(at("whole/recordings.csv")).unwrap().lines().count(), 9);
+    // One movement now, and the other one later.
+    assert!(study("bodies.toml", "again", &["--movements", "1"]).status.success());
+    let page = fs::read_to_string(at("again/bodies.md")).unwrap();
+    assert!(page.contains("of each at each p: 1;") && page.contains("| 0.5 | 500 | 0.1 | 1 |"), "{page}");
+    let output = study("bodies.toml", "again", &[]);
+    assert!(
+        String::from_utf8(output.stderr).unwrap().contains("continuing from what an earlier run finished")
+    );
     // Page and picture are made from the tables alone.
     fs::remove_dir_all(at("again/figures")).unwrap();
     fs::remove_file(at("again/bodies.md")).unwrap();
@@ -142,7 +154,7 @@ fn the_study_of_bodies_repeats_itself_and_names_mistakes() {
         (design("[1.5]"), "motion.coordination"),
     ] {
         fs::write(at("wrong.toml"), wrong).unwrap();
-        let output = study("wrong.toml", "wrong");
+        let output = study("wrong.toml", "wrong", &[]);
         let told = String::from_utf8(output.stderr).unwrap();
         assert!(output.status.code() == Some(2) && told.contains(expected), "{expected}: {told}");
     }
