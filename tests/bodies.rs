@@ -151,6 +151,10 @@ fn the_study_of_bodies_repeats_itself_and_names_mistakes() {
         (design("[]"), "must not be empty"),
         (design("[0.5]").replace("noise = 0.1", "noise = -1"), "noise from 0 to 10"),
         (design("[0.5]").replace("chain-3", "chain-33"), "chain-33.toml: cannot be read"),
+        (
+            design("[0.5]").replace("bodies = [", "bodies = [\"old/chain-3.toml\", "),
+            "two bodies are named chain-3",
+        ),
         (design("[1.5]"), "motion.coordination"),
     ] {
         fs::write(at("wrong.toml"), wrong).unwrap();
