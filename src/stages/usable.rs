@@ -1,4 +1,4 @@
-//! Leave out sensors that tell nothing: those that are not numbers, and those that never change.
+//! Leave out sensors that tell nothing: those that are not numbers, those that never change, and those that have noise alone.
 //!
 //! In: [`Tactile`] pressures as a robot has them. Out: [`Usable`] pressures, and why each other sensor was left out.
 
@@ -6,6 +6,7 @@ use std::fmt::{self, Display, Formatter};
 
 use rayon::prelude::*;
 
+use crate::stages::noise::is_noise_alone;
 use crate::stages::sense::Tactile;
 
 /// Why a sensor tells nothing.
@@ -17,6 +18,8 @@ pub enum Fault {
     Dead,
     /// It has one value throughout, which is not 0.
     Constant,
+    /// It has noise, and nothing else.
+    Noise,
 }
 
 impl Display for Fault {
@@ -25,6 +28,7 @@ impl Display for Fault {
             Self::NotFinite => "not a number",
             Self::Dead => "dead",
             Self::Constant => "constant",
+            Self::Noise => "noise alone",
         })
     }
 }
@@ -38,7 +42,7 @@ pub struct Usable {
     pub sensors: Vec<usize>,
     /// The other sensors, rising.
     pub dropped: Vec<(usize, Fault)>,
-    /// Samples that were left out, because more than half of the sensors have no number there.
+    /// Samples that were left out, because more than half of the sensors that mostly have a number have none there.
     pub lost_samples: usize,
     /// The other samples, rising.
     pub samples: Vec<usize>,
@@ -54,8 +58,10 @@ pub fn usable(tactile: Tactile) -> Usable {
             Some(Fault::NotFinite)
         } else if series.iter().all(|pressure| *pressure == 0.0) {
             Some(Fault::Dead)
+        } else if series.iter().all(|pressure| *pressure == series[0]) {
+            Some(Fault::Constant)
         } else {
-            series.iter().all(|pressure| *pressure == series[0]).then_some(Fault::Constant)
+            is_noise_alone(series).then_some(Fault::Noise)
         }
     };
     let faults: Vec<Option<Fault>> = tactile.pressures.par_chunks_exact(tactile.samples).map(fault).collect();
@@ -65,17 +71,26 @@ pub fn usable(tactile: Tactile) -> Usable {
 }
 
 /// The pressures without samples at which more than half of the sensors have no number, such as a frame that was lost, and the
-/// samples that are left. If that is none of them, nothing is left out.
+/// samples that are left. Sensors that have no number half of the time are broken, and do not count. If no sample would be left,
+/// nothing is left out.
 fn without_lost_samples(mut tactile: Tactile) -> (Tactile, Vec<usize>) {
     let (samples, sensors) = (tactile.samples, tactile.sensors());
     let mut missing = vec![0; samples];
-    for series in tactile.series().filter(|series| series.iter().any(|pressure| !pressure.is_finite())) {
-        missing
-            .iter_mut()
-            .zip(series)
-            .for_each(|(missing, pressure)| *missing += usize::from(!pressure.is_finite()));
+    let mut whole = 0;
+    for series in tactile.series() {
+        let gaps = series.iter().filter(|pressure| !pressure.is_finite()).count();
+        if 2 * gaps >= samples {
+            continue;
+        }
+        whole += 1;
+        if gaps > 0 {
+            missing
+                .iter_mut()
+                .zip(series)
+                .for_each(|(missing, pressure)| *missing += usize::from(!pressure.is_finite()));
+        }
     }
-    let kept: Vec<usize> = (0..samples).filter(|t| 2 * missing[*t] <= sensors).collect();
+    let kept: Vec<usize> = (0..samples).filter(|t| 2 * missing[*t] <= whole).collect();
     if kept.is_empty() || kept.len() == samples {
         return (tactile, (0..samples).collect());
     }
@@ -103,7 +118,10 @@ pub fn only(mut tactile: Tactile, sensors: &[usize]) -> Tactile {
 
 #[cfg(test)]
 mod tests {
+    use rand::RngExt;
+
     use super::*;
+    use crate::numerics::rng::stream;
 
     #[test]
     fn sensors_that_tell_nothing_are_left_out_with_their_reason() {
@@ -125,5 +143,25 @@ mod tests {
         assert_eq!(found.sensors, [0, 1]);
         assert_eq!(found.tactile.pressures, [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
         assert_eq!(found.dropped, [(2, Fault::NotFinite)]);
+    }
+
+    #[test]
+    fn broken_sensors_cost_no_sample() {
+        let nan = f32::NAN;
+        // Two that work but for one frame each, and three that soon break.
+        let mut pressures = vec![1.0, 2.0, nan, 4.0, 5.0, 6.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0];
+        (0..3).for_each(|_| pressures.extend([1.0, nan, nan, nan, nan, nan]));
+        let found = usable(Tactile { samples: 6, pressures });
+        assert_eq!((found.lost_samples, found.sensors), (0, vec![1]));
+    }
+
+    #[test]
+    fn a_sensor_with_noise_alone_is_left_out() {
+        let mut rng = stream(1, 1, "usable", 0);
+        let mut noise = || (0..4).map(|_| rng.random_range(-0.5_f32..0.5)).sum::<f32>();
+        let touch = |t: usize| if t % 200 < 100 { (t % 200) as f32 } else { 0.0 };
+        let series = (0..2000).map(|_| noise()).chain((0..2000).map(touch));
+        let found = usable(Tactile { samples: 2000, pressures: series.collect() });
+        assert_eq!((found.sensors, found.dropped), (vec![1], vec![(0, Fault::Noise)]));
     }
 }
