@@ -56,8 +56,8 @@ pub struct RigidParts {
     pub labels: Vec<usize>,
     /// The share of each sensor's squares that the motion of its part leaves.
     pub left: Vec<f64>,
-    /// The part whose motion leaves least of the others, and that share; `None` if there is no other part.
-    pub next: Vec<Option<(usize, f64)>>,
+    /// Of each sensor, the other parts, and the share that their motions leave, the least first.
+    pub others: Vec<Vec<(usize, f64)>>,
     /// The labels of sets that feel too little to be a part: they are on one of the others, but their own motion does not say
     /// on which.
     pub loose: Vec<usize>,
@@ -350,24 +350,20 @@ fn least(values: impl Iterator<Item = f64>) -> Option<(usize, f64)> {
 fn assigned(parts: &[Set], loose: &[Set], all: &Roots) -> RigidParts {
     let sets: Vec<&Set> = parts.iter().chain(loose).collect();
     let left: Vec<Vec<f64>> = sets.par_iter().map(|set| all.left(&set.fit)).collect();
-    let best = |sensor: usize, sets: &mut dyn Iterator<Item = usize>| {
-        sets.map(|set| (set, left[set][sensor]))
-            .reduce(|best, other| if other.1 < best.1 { other } else { best })
-    };
-    let own: Vec<(usize, f64)> = (0..all.sensors())
-        .map(|sensor| best(sensor, &mut (0..sets.len())).expect("there are sets"))
-        .collect();
+    let best = |sensor: usize| least(left.iter().map(|left| left[sensor])).expect("there are sets");
+    let own: Vec<(usize, f64)> = (0..all.sensors()).map(best).collect();
     let found: Vec<usize> = own.iter().map(|(set, _)| *set).collect();
     let labels = named_by_appearance(&found);
     let names: BTreeMap<usize, usize> = found.iter().copied().zip(labels.iter().copied()).collect();
-    let next = |sensor: usize| {
-        let named = |set: &usize| *set != found[sensor] && names.contains_key(set);
-        let (set, left) = best(sensor, &mut (0..parts.len()).filter(named))?;
-        Some((names[&set], left))
+    let others = |sensor: usize| {
+        let named = (0..parts.len()).filter(|set| *set != found[sensor] && names.contains_key(set));
+        let mut others: Vec<(usize, f64)> = named.map(|set| (names[&set], left[set][sensor])).collect();
+        others.sort_by(|a, b| a.1.total_cmp(&b.1));
+        others
     };
     RigidParts {
         left: own.into_iter().map(|(_, left)| left).collect(),
-        next: (0..all.sensors()).map(next).collect(),
+        others: (0..all.sensors()).map(others).collect(),
         loose: (parts.len()..sets.len()).filter_map(|set| names.get(&set).copied()).collect(),
         labels,
     }

@@ -44,8 +44,8 @@ pub fn settle(tactile: &Tactile, mut parts: RigidParts, rng: &mut impl Rng) -> (
     let new: BTreeMap<usize, usize> = settled.labels.iter().copied().zip(labels.iter().copied()).collect();
     let named = |(name, own): (usize, Motion)| Some((*new.get(&name)?, own));
     let nodes: BTreeMap<usize, Motion> = names.into_iter().zip(motions).filter_map(named).collect();
-    for next in &mut settled.next {
-        *next = next.and_then(|(part, left)| Some((*new.get(&part)?, left)));
+    for others in &mut settled.others {
+        *others = others.iter().filter_map(|(part, left)| Some((*new.get(part)?, *left))).collect();
     }
     (settled.labels, settled.loose) = (labels, Vec::new());
     let (names, motions): (Vec<usize>, Vec<Motion>) = nodes.into_iter().unzip();
@@ -61,11 +61,13 @@ fn largest(sets: BTreeMap<usize, Vec<usize>>) -> (BTreeMap<usize, Vec<usize>>, V
     (order.into_iter().collect(), rest.into_iter().map(|(_, sensors)| sensors).collect())
 }
 
-/// Makes each sensor the part's whose motion leaves least of it, or this part's if none is known.
+/// Makes each sensor the part's whose motion leaves least of it, or this part's if there is no other.
 fn leave(parts: &mut RigidParts, sensors: &[usize], part: usize) {
     for &sensor in sensors {
         let left = parts.left[sensor];
-        (parts.labels[sensor], parts.left[sensor]) = parts.next[sensor].take().unwrap_or((part, left));
+        let others = &mut parts.others[sensor];
+        let best = if others.is_empty() { (part, left) } else { others.remove(0) };
+        (parts.labels[sensor], parts.left[sensor]) = best;
     }
 }
 
@@ -73,7 +75,7 @@ fn leave(parts: &mut RigidParts, sensors: &[usize], part: usize) {
 fn give(parts: &mut RigidParts, sensors: &[usize], part: usize) {
     for &sensor in sensors {
         parts.labels[sensor] = part;
-        parts.next[sensor] = parts.next[sensor].filter(|(next, _)| *next != part);
+        parts.others[sensor].retain(|(other, _)| *other != part);
     }
 }
 
@@ -158,9 +160,8 @@ impl<'a> Body<'a> {
             give(parts, &set, name);
             parts.loose.push(name);
         }
-        // What was next to a part that is none any more has no next part.
-        for next in &mut parts.next {
-            *next = next.filter(|(next, _)| *next != part);
+        for others in &mut parts.others {
+            others.retain(|(other, _)| *other != part);
         }
     }
 }
@@ -211,10 +212,10 @@ mod tests {
         }
         pressures.extend(uniform(singles * samples).into_iter().map(|value| value.max(0.0) as f32));
         let labels: Vec<usize> = (0..60).map(|at| at / 30).chain(2..2 + singles).collect();
-        let next = |at: usize| at.is_multiple_of(2).then_some((1, 0.5));
+        let others = |at: usize| if at.is_multiple_of(2) { vec![(1, 0.5)] } else { Vec::new() };
         let parts = RigidParts {
             left: vec![0.0; labels.len()],
-            next: (0..labels.len()).map(next).collect(),
+            others: (0..labels.len()).map(others).collect(),
             loose: (2..2 + singles).collect(),
             labels,
         };
@@ -228,7 +229,7 @@ mod tests {
         assert_eq!(tree.parts.iter().map(|part| part.0).collect::<Vec<_>>(), [0, 1]);
         assert!(settled.labels.iter().all(|label| *label < 2) && settled.loose.is_empty());
         assert_eq!(settled.labels[..60], parts.labels[..60]);
-        assert!(settled.next.iter().flatten().all(|(part, left)| *part < 2 && left.is_finite()));
+        assert!(settled.others.iter().flatten().all(|(part, left)| *part < 2 && left.is_finite()));
     }
 
     /// Three planar parts in a row of 20 sensors on their sides, and a fourth of six: `c` of what the last part, and the ends of the
@@ -247,8 +248,8 @@ mod tests {
         let last = sides[3].with(&ends[1]);
         (0..6).for_each(|sensor| pressures.extend(felt(&last.values, &c(sensor))));
         let labels: Vec<usize> = (0..66).map(|sensor| sensor / 20).collect();
-        let (left, next) = (vec![0.0; labels.len()], vec![Some((0, 0.5)); labels.len()]);
-        (Tactile { samples, pressures }, RigidParts { labels, left, next, loose: Vec::new() })
+        let (left, others) = (vec![0.0; labels.len()], vec![vec![(0, 0.5)]; labels.len()]);
+        (Tactile { samples, pressures }, RigidParts { labels, left, others, loose: Vec::new() })
     }
 
     #[test]
@@ -261,6 +262,20 @@ mod tests {
         assert_eq!(foot[60..], [3; 6]);
         let ends = settled(small_part(|sensor| [0.0, 0.0, sign(sensor)]));
         assert_eq!(ends[60..], [1; 6]);
+    }
+
+    #[test]
+    fn a_sensor_that_was_next_to_a_piece_goes_to_the_next_part() {
+        let sign = |sensor: usize| if sensor.is_multiple_of(2) { 1.0 } else { -1.0 };
+        let (mut tactile, mut parts) = small_part(|sensor| [0.0, 0.0, sign(sensor)]);
+        // A loose sensor that feels one time of all: no joint needs it.
+        tactile.pressures.extend((0..tactile.samples).map(|t| f32::from(t == 7)));
+        parts.labels.push(4);
+        parts.left.push(0.0);
+        parts.others.push(vec![(3, 0.1), (2, 0.12), (0, 0.9)]);
+        parts.loose.push(4);
+        let (settled, _) = settle(&tactile, parts, &mut stream(1, 1, "co-motion", 0));
+        assert_eq!((settled.labels[60..].to_vec(), settled.left[66]), (vec![1, 1, 1, 1, 1, 1, 2], 0.12));
     }
 
     #[test]

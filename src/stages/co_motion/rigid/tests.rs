@@ -36,7 +36,7 @@ fn parts_and_their_number_are_found_from_pieces() {
     let found = rigid_parts(&tactile, &all, &distances(&tactile));
     assert_eq!(found.labels, truth);
     assert!(found.left.iter().all(|left| *left < 0.1));
-    assert!(found.left.iter().zip(&found.next).all(|(left, next)| next.unwrap().1 > *left));
+    assert!(found.left.iter().zip(&found.others).all(|(left, others)| others[0].1 > *left));
 }
 
 #[test]
