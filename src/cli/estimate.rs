@@ -29,11 +29,11 @@ use crate::stages::usable::{Fault, Usable, usable};
 ///
 /// Reads pressures (T x M, any numbers) and writes into DIR: parts.csv (sensor,part,unexplained,next_part,next_unexplained),
 /// tree.csv (child,parent,confidence), edges.csv (part,other,agreement,confidence,in_tree), dropped.csv (sensor,fault: those
-/// that are dead, constant, no number or have noise alone), summary.json and report.html, which shows parts, tree and touch. A
-/// part is rigid: sensors are on one part if one motion explains what all of them feel. unexplained is the share of a sensor's
-/// squares that the motion of its part leaves, next_unexplained what the next best part leaves. Parts are joined as by `tree`;
-/// confidence is that of an edge if the parts are right. Unless --settings says otherwise, pressures have eight levels, of each
-/// sensor's own (reproduce/estimate.toml).
+/// that are dead, constant or no number), summary.json and report.html, which shows parts, tree and touch. A part is rigid:
+/// sensors are on one part if one motion explains what all of them feel. unexplained is the share of a sensor's squares that
+/// the motion of its part leaves, next_unexplained what the next best part leaves. Parts are joined as by `tree`; confidence is
+/// that of an edge if the parts are right. Unless --settings says otherwise, pressures have eight levels, of each sensor's own
+/// (reproduce/estimate.toml).
 #[derive(Args)]
 pub struct Estimate {
     /// Pressures: a .npy or .csv file with a row for each sample and a column for each sensor

@@ -21,8 +21,6 @@
 
 mod smooth;
 
-use std::collections::BTreeSet;
-
 use rayon::prelude::*;
 
 use self::smooth::smooth;
@@ -38,10 +36,8 @@ const FORGETFUL: f64 = 0.2;
 const TIMES: f32 = 4.0;
 /// Fewer second differences than these tell nothing of noise.
 const FEWEST: usize = 100;
-/// A sensor of which fewer than one sample in so many exceeds its noise feels nothing else, or has levels, such as on and off.
+/// A sensor of which fewer than one sample in so many exceeds its noise has levels, such as on and off, and no noise.
 const ONE_IN: usize = 1000;
-/// Most values of a sensor that has levels.
-const LEVELS: usize = 16;
 
 /// The pressures above the noise, and how many sensors have noise.
 pub fn above_noise(mut tactile: Tactile) -> (Tactile, usize) {
@@ -55,31 +51,8 @@ pub fn above_noise(mut tactile: Tactile) -> (Tactile, usize) {
     (tactile, noisy)
 }
 
-/// Whether a series is noise and nothing else: hardly a sample is left once that is taken off.
-pub fn is_noise_alone(series: &[f32]) -> bool {
-    let Some(size) = marked(series).filter(|size| !exceeds(series, *size)) else { return false };
-    let levels = series.iter().try_fold(BTreeSet::new(), |mut levels, pressure| {
-        levels.insert(pressure.to_bits());
-        (levels.len() <= LEVELS).then_some(levels)
-    });
-    let mut left = series.to_vec();
-    smooth(&mut left, size);
-    levels.is_none() && left.iter().filter(|pressure| **pressure != 0.0).count() * ONE_IN < left.len()
-}
-
 /// The middle of the sizes of second differences of a series with noise; `None` if it has none.
 fn size(series: &[f32]) -> Option<f32> {
-    marked(series).filter(|size| exceeds(series, *size))
-}
-
-/// Whether some samples exceed noise of this size.
-fn exceeds(series: &[f32], size: f32) -> bool {
-    let left = series.iter().filter(|pressure| pressure.abs() >= TIMES * size).count();
-    left * ONE_IN >= series.len()
-}
-
-/// The middle of the sizes of second differences of a series that has all three marks of noise.
-fn marked(series: &[f32]) -> Option<f32> {
     let differences: Vec<f32> = series.windows(3).map(|three| three[0] - 2.0 * three[1] + three[2]).collect();
     let mut sizes: Vec<f32> =
         differences.iter().map(|difference| difference.abs()).filter(|size| *size > 0.0).collect();
@@ -97,7 +70,8 @@ fn marked(series: &[f32]) -> Option<f32> {
     let middle = sizes.len() / 2;
     let (below, &mut size, _) = sizes.select_nth_unstable_by(middle, f32::total_cmp);
     let quartile = *below.select_nth_unstable_by(middle / 2, f32::total_cmp).1;
-    (f64::from(size) < EVEN * f64::from(quartile)).then_some(size)
+    let left = series.iter().filter(|pressure| pressure.abs() >= TIMES * size).count();
+    (f64::from(size) < EVEN * f64::from(quartile) && left * ONE_IN >= series.len()).then_some(size)
 }
 
 #[cfg(test)]
@@ -147,19 +121,6 @@ mod tests {
         for few in [vec![], vec![1.0], vec![1.0, 2.0], vec![1.0, 2.0, 4.0], vec![3.0; 100]] {
             let tactile = Tactile { samples: few.len().max(1), pressures: few };
             assert_eq!(above_noise(tactile.clone()), (tactile, 0));
-        }
-    }
-
-    #[test]
-    fn noise_alone_is_told_from_touch_and_from_levels() {
-        let rng = &mut stream(3, 1, "noise", 0);
-        let rest = vec![0.0; 10_000];
-        let signed = noisy(&rest, 0.3, rng);
-        let positive: Vec<f32> = signed.iter().map(|pressure| pressure.max(0.0)).collect();
-        assert!(is_noise_alone(&signed) && is_noise_alone(&positive));
-        let levels: Vec<f32> = signed.iter().map(|pressure| f32::from(*pressure > 0.0)).collect();
-        for felt in [levels, touch(), noisy(&touch(), 1.0, rng), noisy(&touch(), 10.0, rng), rest] {
-            assert!(!is_noise_alone(&felt));
         }
     }
 

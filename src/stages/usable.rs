@@ -1,4 +1,4 @@
-//! Leave out sensors that tell nothing: those that are not numbers, those that never change, and those that have noise alone.
+//! Leave out sensors that tell nothing: those that are not numbers, and those that never change.
 //!
 //! In: [`Tactile`] pressures as a robot has them. Out: [`Usable`] pressures, and why each other sensor was left out.
 
@@ -6,7 +6,6 @@ use std::fmt::{self, Display, Formatter};
 
 use rayon::prelude::*;
 
-use crate::stages::noise::is_noise_alone;
 use crate::stages::sense::Tactile;
 
 /// Why a sensor tells nothing.
@@ -18,8 +17,6 @@ pub enum Fault {
     Dead,
     /// It has one value throughout, which is not 0.
     Constant,
-    /// It has noise, and nothing else.
-    Noise,
 }
 
 impl Display for Fault {
@@ -28,7 +25,6 @@ impl Display for Fault {
             Self::NotFinite => "not a number",
             Self::Dead => "dead",
             Self::Constant => "constant",
-            Self::Noise => "noise alone",
         })
     }
 }
@@ -42,7 +38,7 @@ pub struct Usable {
     pub sensors: Vec<usize>,
     /// The other sensors, rising.
     pub dropped: Vec<(usize, Fault)>,
-    /// Samples that were left out, because more than half of the sensors that mostly have a number have none there.
+    /// Samples that were left out, because more than half of the sensors have no number there.
     pub lost_samples: usize,
     /// The other samples, rising.
     pub samples: Vec<usize>,
@@ -58,10 +54,8 @@ pub fn usable(tactile: Tactile) -> Usable {
             Some(Fault::NotFinite)
         } else if series.iter().all(|pressure| *pressure == 0.0) {
             Some(Fault::Dead)
-        } else if series.iter().all(|pressure| *pressure == series[0]) {
-            Some(Fault::Constant)
         } else {
-            is_noise_alone(series).then_some(Fault::Noise)
+            series.iter().all(|pressure| *pressure == series[0]).then_some(Fault::Constant)
         }
     };
     let faults: Vec<Option<Fault>> = tactile.pressures.par_chunks_exact(tactile.samples).map(fault).collect();
@@ -71,26 +65,22 @@ pub fn usable(tactile: Tactile) -> Usable {
 }
 
 /// The pressures without samples at which more than half of the sensors have no number, such as a frame that was lost, and the
-/// samples that are left. Sensors that have no number half of the time are broken, and do not count. If no sample would be left,
-/// nothing is left out.
+/// samples that are left. Whether sensors that have no number half of the time count there is what leaves more numbers: broken ones
+/// should not cost samples, and a slow skin, which has no numbers in most frames of a log, should not cost sensors. If no sample would
+/// be left, nothing is left out.
 fn without_lost_samples(mut tactile: Tactile) -> (Tactile, Vec<usize>) {
     let (samples, sensors) = (tactile.samples, tactile.sensors());
-    let mut missing = vec![0; samples];
-    let mut whole = 0;
-    for series in tactile.series() {
-        let gaps = series.iter().filter(|pressure| !pressure.is_finite()).count();
-        if 2 * gaps >= samples {
-            continue;
-        }
-        whole += 1;
-        if gaps > 0 {
-            missing
-                .iter_mut()
-                .zip(series)
-                .for_each(|(missing, pressure)| *missing += usize::from(!pressure.is_finite()));
+    let gaps = |series: &[f32]| series.iter().filter(|pressure| !pressure.is_finite()).count();
+    let gaps: Vec<usize> = tactile.pressures.par_chunks_exact(samples).map(gaps).collect();
+    let every: Vec<usize> = (0..sensors).collect();
+    let (working, broken): (Vec<usize>, Vec<usize>) = every.iter().partition(|at| 2 * gaps[**at] < samples);
+    let mut kept = kept(&tactile, &gaps, &every);
+    if !broken.is_empty() && !working.is_empty() {
+        let other = self::kept(&tactile, &gaps, &working);
+        if numbers(&tactile, &other) > numbers(&tactile, &kept) {
+            kept = other;
         }
     }
-    let kept: Vec<usize> = (0..samples).filter(|t| 2 * missing[*t] <= whole).collect();
     if kept.is_empty() || kept.len() == samples {
         return (tactile, (0..samples).collect());
     }
@@ -106,6 +96,26 @@ fn without_lost_samples(mut tactile: Tactile) -> (Tactile, Vec<usize>) {
     (tactile, kept)
 }
 
+/// The samples at which at least half of these sensors have a number; `gaps` says how many each sensor lacks.
+fn kept(tactile: &Tactile, gaps: &[usize], sensors: &[usize]) -> Vec<usize> {
+    let mut missing = vec![0; tactile.samples];
+    for (sensor, series) in tactile.series().enumerate() {
+        if gaps[sensor] > 0 && sensors.binary_search(&sensor).is_ok() {
+            missing
+                .iter_mut()
+                .zip(series)
+                .for_each(|(missing, pressure)| *missing += usize::from(!pressure.is_finite()));
+        }
+    }
+    (0..tactile.samples).filter(|t| 2 * missing[*t] <= sensors.len()).collect()
+}
+
+/// How many numbers are left of sensors that have one at all of these samples.
+fn numbers(tactile: &Tactile, samples: &[usize]) -> usize {
+    let is_whole = |series: &&[f32]| samples.iter().all(|t| series[*t].is_finite());
+    samples.len() * tactile.series().filter(is_whole).count()
+}
+
 /// The pressures of some sensors, which rise. Nothing is copied to another place of the memory: it may be most of what there is.
 pub fn only(mut tactile: Tactile, sensors: &[usize]) -> Tactile {
     let samples = tactile.samples;
@@ -118,10 +128,7 @@ pub fn only(mut tactile: Tactile, sensors: &[usize]) -> Tactile {
 
 #[cfg(test)]
 mod tests {
-    use rand::RngExt;
-
     use super::*;
-    use crate::numerics::rng::stream;
 
     #[test]
     fn sensors_that_tell_nothing_are_left_out_with_their_reason() {
@@ -156,12 +163,15 @@ mod tests {
     }
 
     #[test]
-    fn a_sensor_with_noise_alone_is_left_out() {
-        let mut rng = stream(1, 1, "usable", 0);
-        let mut noise = || (0..4).map(|_| rng.random_range(-0.5_f32..0.5)).sum::<f32>();
-        let touch = |t: usize| if t % 200 < 100 { (t % 200) as f32 } else { 0.0 };
-        let series = (0..2000).map(|_| noise()).chain((0..2000).map(touch));
-        let found = usable(Tactile { samples: 2000, pressures: series.collect() });
-        assert_eq!((found.sensors, found.dropped), (vec![1], vec![(0, Fault::Noise)]));
+    fn a_slow_skin_in_a_fast_log_costs_no_sensor() {
+        let nan = f32::NAN;
+        let slow = [1.0, nan, 2.0, nan, 3.0, nan];
+        // A counter has a number in each frame.
+        for (counters, sensors) in [(0, vec![0, 1, 2]), (1, vec![0, 1, 2, 3])] {
+            let mut pressures = [slow; 3].concat();
+            (0..counters).for_each(|_| pressures.extend([1.0, 2.0, 3.0, 4.0, 5.0, 6.0]));
+            let found = usable(Tactile { samples: 6, pressures });
+            assert_eq!((found.samples, found.sensors), (vec![0, 2, 4], sensors));
+        }
     }
 }
