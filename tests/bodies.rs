@@ -147,6 +147,13 @@ fn the_study_of_bodies_repeats_itself_and_names_mistakes() {
             "{file}"
         );
     }
+    // Joints that are always locked: nothing is felt, and nothing found.
+    fs::write(at("locked.toml"), design("[1.0]")).unwrap();
+    let output = study("locked.toml", "locked", &["--movements", "1"]);
+    assert!(output.status.success(), "{output:?}");
+    let rows = fs::read_to_string(at("locked/recordings.csv")).unwrap();
+    let row = rows.lines().nth(1).unwrap();
+    assert!(row.starts_with("chain-3,1.0,1,1000,0.0,true,3,0,0.0,false,false,"), "{rows}");
     for (wrong, expected) in [
         (design("[]"), "must not be empty"),
         (design("[0.5]").replace("noise = 0.1", "noise = -1"), "noise from 0 to 10"),

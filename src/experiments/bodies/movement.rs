@@ -8,7 +8,7 @@ use super::peers;
 use crate::analysis::estimate::estimate;
 use crate::numerics::rng::stream;
 use crate::settings::Settings;
-use crate::stages::co_motion::co_motion_tree;
+use crate::stages::co_motion::{MIN_SENSORS, co_motion_tree};
 use crate::stages::distance::information_metric;
 use crate::stages::evaluate::{joins, parts, parts_match, score};
 use crate::stages::noise::above_noise;
@@ -138,11 +138,39 @@ impl Movement<'_> {
         Ok(found)
     }
 
+    /// The row of a recording in which nothing is found.
+    fn nothing(&self, seen: &Seen) -> Row {
+        Row {
+            body: self.body.name.clone(),
+            coordination: self.settings.motion.coordination,
+            movement: self.number,
+            samples: seen.recording.samples,
+            noise: seen.recording.noise,
+            resolved: seen.resolved,
+            true_parts: seen.truth.parts(),
+            parts: 0,
+            ari: 0.0,
+            parts_right: false,
+            tree_right: false,
+            tree_of_true_parts_right: false,
+            nearest_right: false,
+            chow_liu_right: false,
+            dpgmm_lj_parts: None,
+            dpgmm_lj_right: false,
+            dpgmm_prim_right: false,
+        }
+    }
+
     /// What is found in a recording.
     fn record(&self, tactile: Tactile, seen: &Seen) -> (Row, Vec<EdgeRow>) {
-        let Settings { motion, quantise: levels, experiment, .. } = self.settings;
+        let Settings { quantise: levels, experiment, .. } = self.settings;
         let &Recording { samples, noise } = seen.recording;
+        let nothing = self.nothing(seen);
         let Usable { tactile, sensors, .. } = usable(tactile);
+        // A short recording may be of a body whose joints are all locked.
+        if sensors.len() < MIN_SENSORS {
+            return (nothing, Vec::new());
+        }
         let (tactile, _) = above_noise(tactile);
         let own = sensors.iter().map(|&at| seen.truth.labels[at]).collect();
         let truth = Truth { labels: own, tree: seen.truth.tree.clone() };
@@ -161,13 +189,6 @@ impl Movement<'_> {
             |at: usize| mixtures.as_ref().is_some_and(|draws| score(&draws[at], &truth, 0.0).tree_correct);
         let found = scored(labels, &tree.tree);
         let row = Row {
-            body: self.body.name.clone(),
-            coordination: motion.coordination,
-            movement: self.number,
-            samples,
-            noise,
-            resolved: seen.resolved,
-            true_parts: truth.parts(),
             parts: tree.parts.len(),
             ari: found.ari,
             parts_right: parts_match(labels, &truth),
@@ -178,6 +199,7 @@ impl Movement<'_> {
             dpgmm_lj_parts: mixtures.as_ref().map(|draws| parts(&draws[0].labels)),
             dpgmm_lj_right: mixture_right(0),
             dpgmm_prim_right: mixture_right(1),
+            ..nothing
         };
         let edge = |edge: &Edge| EdgeRow {
             body: row.body.clone(),
