@@ -105,10 +105,12 @@ fn noise_costs_fewer_parts_if_it_counts_as_no_touch() {
 fn the_study_of_bodies_repeats_itself_and_names_mistakes() {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name);
-    let chain = Path::new(env!("CARGO_MANIFEST_DIR")).join("bodies/chain-3.toml");
+    let chain =
+        fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("bodies/chain-3.toml")).unwrap();
+    fs::write(at("chain-3.toml"), &chain).unwrap();
     let design = |coordinations: &str| {
         format!(
-            "seed = 4\nmovements = 2\nchains = 2\ncoordinations = {coordinations}\nbodies = [{chain:?}]\n\
+            "seed = 4\nmovements = 2\nchains = 2\ncoordinations = {coordinations}\nbodies = [\"chain-3.toml\"]\n\
              [[recording]]\nsamples = 1000\nnoise = 0.0\n[[recording]]\nsamples = 500\nnoise = 0.1\n"
         )
     };
@@ -131,7 +133,9 @@ fn the_study_of_bodies_repeats_itself_and_names_mistakes() {
     assert!(study("bodies.toml", "again", &["--movements", "1"]).status.success());
     let page = fs::read_to_string(at("again/bodies.md")).unwrap();
     assert!(page.contains("of each at each p: 1;") && page.contains("| 0.5 | 500 | 0.1 | 1 |"), "{page}");
+    assert!(fs::read_to_string(at("again/design.toml")).unwrap().contains("movements = 1\n"));
     let output = study("bodies.toml", "again", &[]);
+    assert!(output.status.success(), "{output:?}");
     assert!(
         String::from_utf8(output.stderr).unwrap().contains("continuing from what an earlier run finished")
     );
@@ -147,6 +151,11 @@ fn the_study_of_bodies_repeats_itself_and_names_mistakes() {
             "{file}"
         );
     }
+    // What was kept of another body is not used, whatever its file.
+    fs::write(at("chain-3.toml"), chain.replace("radius = ", "density = 900\nradius = ")).unwrap();
+    let output = study("bodies.toml", "again", &["--movements", "1"]);
+    let told = String::from_utf8(output.stderr).unwrap();
+    assert!(output.status.success() && told.contains("of other settings"), "{told}");
     // Joints that are always locked: nothing is felt, and nothing found.
     fs::write(at("locked.toml"), design("[1.0]")).unwrap();
     let output = study("locked.toml", "locked", &["--movements", "1"]);

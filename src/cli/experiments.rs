@@ -267,10 +267,11 @@ impl Bodies {
     /// Runs the subcommand.
     pub fn run(self) -> Result<ExitCode> {
         self.threads.apply()?;
-        let text = read_toml(&self.design)?;
+        let mut text = read_toml(&self.design)?;
         let mut design = bodies::Design::parse(&text, &self.design)?;
         if let Some(movements) = self.movements {
             design.movements = movements as usize;
+            text = toml::to_string(&design)?;
         }
         prepare_folder(&self.out)?;
         bodies::study(&design, &text, &self.design, &self.out)?;

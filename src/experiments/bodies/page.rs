@@ -186,13 +186,12 @@ fn about(design: &Design, rows: &[Row]) -> String {
             rows.len()
         ),
     };
-    // A study may have run fewer or more than the design says.
-    let movements = rows.iter().map(|row| row.movement).max().unwrap_or(0);
     format!(
-        "{} bodies; movements of each at each p: {movements}; seed {}; chains of each mixture: {}. {resolved} `reproduce/bodies.sh` makes \
+        "{} bodies; movements of each at each p: {}; seed {}; chains of each mixture: {}. {resolved} `reproduce/bodies.sh` makes \
          this page; each recording is a row of [recordings.csv](recordings.csv), each edge of [edges.csv](edges.csv). How it \
          works: `docs/co-motion.md`.",
         design.bodies.len(),
+        design.movements,
         design.seed,
         design.chains
     )
@@ -232,4 +231,32 @@ fn bin(edges: &[&EdgeRow], low: f64, high: Option<f64>) -> String {
     let Some(confidence) = mean(&confidences).value else { return "–".to_owned() };
     let right = written(own.iter().filter(|edge| edge.right).count(), own.len());
     format!("{} → {right} of {}", numbers::value(Some(confidence), Some(Unit::Rate)), own.len())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn edge(confidence: f64, right: bool) -> EdgeRow {
+        EdgeRow {
+            body: "star".to_owned(),
+            coordination: 0.5,
+            movement: 1,
+            samples: 1000,
+            noise: 0.0,
+            confidence,
+            right,
+        }
+    }
+
+    #[test]
+    fn edges_count_in_the_bin_of_their_confidence() {
+        let edges = [edge(1.0, true), edge(1.0, false), edge(0.9975, true), edge(0.5, true)];
+        let edges: Vec<&EdgeRow> = edges.iter().collect();
+        let bins = BINS.map(|(low, high)| bin(&edges, low, high));
+        assert_eq!([&bins[0], &bins[2], &bins[3]], ["–"; 3]);
+        assert!(bins[1].starts_with("50.0 % → 100 % (") && bins[1].ends_with(" of 1"), "{bins:?}");
+        assert!(bins[4].starts_with("99.8 % → 100 % (") && bins[4].ends_with(" of 1"), "{bins:?}");
+        assert!(bins[5].starts_with("100 % → 50.0 % (") && bins[5].ends_with(" of 2"), "{bins:?}");
+    }
 }

@@ -36,7 +36,12 @@ fn parts_and_their_number_are_found_from_pieces() {
     let found = rigid_parts(&tactile, &all, &distances(&tactile));
     assert_eq!(found.labels, truth);
     assert!(found.left.iter().all(|left| *left < 0.1));
-    assert!(found.left.iter().zip(&found.others).all(|(left, others)| others[0].1 > *left));
+    for ((label, left), others) in found.labels.iter().zip(&found.left).zip(&found.others) {
+        assert!(others[0].1 > *left && others.is_sorted_by(|one, other| one.1 <= other.1));
+        let mut parts: Vec<usize> = others.iter().map(|other| other.0).chain([*label]).collect();
+        parts.sort_unstable();
+        assert!(parts.into_iter().eq(0..=*truth.iter().max().unwrap()));
+    }
 }
 
 #[test]
