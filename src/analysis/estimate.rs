@@ -27,7 +27,7 @@ pub struct Estimate {
 
 /// Estimates the parts and the tree.
 ///
-/// In: M × T pressures of sensors that all change. Calls `tick` after each of the three steps: distances, parts, tree.
+/// In: M × T pressures of at least [`MIN_SENSORS`](crate::stages::co_motion::MIN_SENSORS) sensors, which all change. Calls `tick` after each of the three steps: distances, parts, tree.
 pub fn estimate(tactile: &Tactile, levels: &Quantise, rng: &mut impl Rng, tick: &dyn Fn()) -> Estimate {
     let (sensors, distances) = distances(tactile, levels);
     tick();

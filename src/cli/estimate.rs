@@ -157,12 +157,10 @@ impl Estimate {
 /// Writes all files.
 fn write(out: &Path, found: &estimate::Estimate, read: &Read, seed: u64) -> Result<Summary> {
     let &Read { tactile, sensors, dropped, lost_samples, noisy, .. } = read;
-    let parts = sensors.iter().enumerate().map(|(at, &sensor)| PartRow {
-        sensor,
-        part: found.parts.labels[at],
-        unexplained: found.parts.left[at],
-        next_part: found.parts.others[at].first().map(|(part, _)| *part),
-        next_unexplained: found.parts.others[at].first().map(|(_, left)| *left),
+    let parts = sensors.iter().enumerate().map(|(at, &sensor)| {
+        let (next_part, next_unexplained) = found.parts.others[at].first().copied().unzip();
+        let (part, unexplained) = (found.parts.labels[at], found.parts.left[at]);
+        PartRow { sensor, part, unexplained, next_part, next_unexplained }
     });
     write_rows(&out.join("parts.csv"), parts)?;
     let row = |(sensor, fault): &(usize, Fault)| DroppedRow { sensor: *sensor, fault: fault.to_string() };

@@ -72,11 +72,10 @@ fn without_lost_samples(mut tactile: Tactile) -> (Tactile, Vec<usize>) {
     let (samples, sensors) = (tactile.samples, tactile.sensors());
     let gaps = |series: &[f32]| series.iter().filter(|pressure| !pressure.is_finite()).count();
     let gaps: Vec<usize> = tactile.pressures.par_chunks_exact(samples).map(gaps).collect();
-    let every: Vec<usize> = (0..sensors).collect();
-    let (working, broken): (Vec<usize>, Vec<usize>) = every.iter().partition(|at| 2 * gaps[**at] < samples);
-    let mut kept = kept(&tactile, &gaps, &every);
-    if !broken.is_empty() && !working.is_empty() {
-        let other = self::kept(&tactile, &gaps, &working);
+    let mut kept = shared(&tactile, &gaps, samples);
+    let half = samples.div_ceil(2) - 1;
+    if gaps.iter().any(|gaps| *gaps > half) {
+        let other = shared(&tactile, &gaps, half);
         if numbers(&tactile, &other) > numbers(&tactile, &kept) {
             kept = other;
         }
@@ -96,18 +95,17 @@ fn without_lost_samples(mut tactile: Tactile) -> (Tactile, Vec<usize>) {
     (tactile, kept)
 }
 
-/// The samples at which at least half of these sensors have a number; `gaps` says how many each sensor lacks.
-fn kept(tactile: &Tactile, gaps: &[usize], sensors: &[usize]) -> Vec<usize> {
+/// The samples at which at least half of the sensors with no more than `most` gaps have a number; `gaps` says how many each has.
+fn shared(tactile: &Tactile, gaps: &[usize], most: usize) -> Vec<usize> {
     let mut missing = vec![0; tactile.samples];
-    for (sensor, series) in tactile.series().enumerate() {
-        if gaps[sensor] > 0 && sensors.binary_search(&sensor).is_ok() {
-            missing
-                .iter_mut()
-                .zip(series)
-                .for_each(|(missing, pressure)| *missing += usize::from(!pressure.is_finite()));
-        }
+    for (series, _) in tactile.series().zip(gaps).filter(|(_, gaps)| (1..=most).contains(*gaps)) {
+        missing
+            .iter_mut()
+            .zip(series)
+            .for_each(|(missing, pressure)| *missing += usize::from(!pressure.is_finite()));
     }
-    (0..tactile.samples).filter(|t| 2 * missing[*t] <= sensors.len()).collect()
+    let sensors = gaps.iter().filter(|gaps| **gaps <= most).count();
+    (0..tactile.samples).filter(|t| 2 * missing[*t] <= sensors).collect()
 }
 
 /// How many numbers are left of sensors that have one at all of these samples.

@@ -106,7 +106,7 @@ impl Movement<'_> {
         format!("{}-p{}-{}", self.body.name, self.settings.motion.coordination, self.number)
     }
 
-    /// A number that no other movement has, for its streams of random numbers.
+    /// A number that no other movement at its p has, for its streams of random numbers: movements at all p share them.
     fn simulation(&self) -> usize {
         (self.number - 1) * self.design.bodies.len() + self.of_body + 1
     }

@@ -85,6 +85,11 @@ impl Page<'_> {
 
     /// The page.
     pub fn text(&self) -> String {
+        [self.methods(), self.by_body(), self.confidences()].concat().join("\n")
+    }
+
+    /// How often each method is right.
+    fn methods(&self) -> Vec<String> {
         let &Self { design, rows, .. } = self;
         let mut lines = vec![
         "# Parts and tree of any body\n".to_owned(),
@@ -112,13 +117,21 @@ impl Page<'_> {
                 lines.push(row(cells.into_iter().chain(METHODS.map(|(_, right)| share(&own, right)))));
             }
         }
-        lines.push("\n## Body by body\n".to_owned());
-        let Some(longest) = longest(design) else { return lines.join("\n") };
-        lines.push(format!(
-        "Of {} samples with noise {}: in how many movements the tree over the estimated parts is right, and the mean adjusted \
-         Rand index.\n",
-        longest.samples, longest.noise
-    ));
+        lines
+    }
+
+    /// How often the tree of each body is right.
+    fn by_body(&self) -> Vec<String> {
+        let &Self { design, rows, .. } = self;
+        let longest = longest(design);
+        let mut lines = vec![
+            "\n## Body by body\n".to_owned(),
+            format!(
+                "Of {} samples with noise {}: in how many movements the tree over the estimated parts is right, and the mean adjusted \
+                 Rand index.\n",
+                longest.samples, longest.noise
+            ),
+        ];
         let header = ["body".to_owned(), "parts".to_owned()];
         lines.push(row(header.into_iter().chain(design.coordinations.iter().map(|p| format!("p = {p}")))));
         lines.push(rule(2 + design.coordinations.len()));
@@ -132,25 +145,30 @@ impl Page<'_> {
             let first = [body[0].body.clone(), body[0].true_parts.to_string()];
             lines.push(row(first.into_iter().chain(design.coordinations.iter().map(at))));
         }
-        lines.push("\n## Are the confidences right?\n".to_owned());
-        lines.push(
+        lines
+    }
+
+    /// How often edges are right, by their confidence.
+    fn confidences(&self) -> Vec<String> {
+        let mut lines = vec![
+            "\n## Are the confidences right?\n".to_owned(),
             "All edges of all estimated trees, by their confidence: mean confidence, share that is right, 95 % interval (Wilson), and \
              how many there are. A confidence is that of an edge if the parts are right: other times of the same recording do not \
              show that they are not. So edges over parts that are right and over parts that are not count apart. An edge is right if \
              it joins parts that are joined, each estimated part being that of most of its sensors.\n"
                 .to_owned(),
-        );
+        ];
         let bins = BINS.map(|(low, high)| match high {
             None => "100 %".to_owned(),
             Some(high) => format!("{} to {} %", numbers::percent(low), numbers::percent(high)),
         });
         lines.push(row(["T", "noise", "parts"].map(str::to_owned).into_iter().chain(bins)));
         lines.push(rule(3 + BINS.len()));
-        for recording in &design.recordings {
+        for recording in &self.design.recordings {
             lines.extend([true, false].map(|parts_right| self.calibration(recording, parts_right)));
         }
         lines.push(String::new());
-        lines.join("\n")
+        lines
     }
 
     /// How often edges of these recordings are right, by their confidence.
@@ -202,11 +220,11 @@ fn is_of(row: &Row, p: f64, recording: &Recording) -> bool {
 }
 
 /// The longest recording of least noise.
-fn longest(design: &Design) -> Option<Recording> {
+fn longest(design: &Design) -> Recording {
     let order = |one: &&Recording, other: &&Recording| {
         one.samples.cmp(&other.samples).then(other.noise.total_cmp(&one.noise))
     };
-    design.recordings.iter().max_by(order).copied()
+    *design.recordings.iter().max_by(order).expect("a design has recordings")
 }
 
 /// The share of rows that are right, with its interval.

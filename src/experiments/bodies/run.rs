@@ -44,7 +44,7 @@ pub fn study(design: &Design, text: &str, path: &Path, out: &Path) -> Result<(),
         settings.check_times(body.body.agent.sites.len()).map_err(crate::settings::SettingsError::from)?;
     }
     // What a movement gives does not hang on how many there are: a study of more goes on from what one of fewer left.
-    // It hangs on the bodies as they are, not on where their files are alone.
+    // It hangs on the bodies as they were read: a file that changes makes another study.
     let agents: Vec<String> = bodies.iter().map(|body| format!("{:?}", body.body.agent)).collect();
     let checkpoints = Checkpoints::new(out, &(Design { movements: 0, ..design.clone() }, agents));
     let each = design.recordings.len() as u64 + 1;

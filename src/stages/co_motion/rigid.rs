@@ -65,7 +65,7 @@ pub struct RigidParts {
 
 /// Finds the parts.
 ///
-/// In: M × T pressures, of any sign, of sensors that all change; and the distances between `sensors`, which are spread over all
+/// In: M × T pressures, of any sign, of at least [`MIN_SENSORS`] sensors, which all change; and the distances between `sensors`, which are spread over all
 /// of them. The others go to the part whose motion leaves least of them.
 pub fn rigid_parts(tactile: &Tactile, sensors: &[usize], distances: &Distances) -> RigidParts {
     let signed = is_signed(tactile);
