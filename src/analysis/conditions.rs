@@ -134,17 +134,13 @@ impl Conditions {
 
     /// Rate of ones among ones and zeros, by simulation.
     pub fn rate(&self, groups: &[Vec<f64>]) -> Estimate {
-        let all = groups.concat();
-        self.clustered(rate(ones(&all), all.len()), groups)
+        self.clustered(pooled_rate(groups), groups)
     }
 
     /// The difference of the means, or of the rates if `rates`, of `groups` of these conditions and `others` of
     /// conditions of the same simulations: others minus groups.
     pub fn difference(&self, groups: &[Vec<f64>], others: &[Vec<f64>], rates: bool) -> Estimate {
-        let pooled = |groups: &[Vec<f64>]| {
-            let all = groups.concat();
-            if rates { rate(ones(&all), all.len()) } else { mean(&all) }
-        };
+        let pooled = |groups: &[Vec<f64>]| if rates { pooled_rate(groups) } else { mean(&groups.concat()) };
         let (first, second) = (totals(groups), totals(others));
         self.resamples.difference((pooled(groups), &first), (pooled(others), &second))
     }
@@ -152,6 +148,22 @@ impl Conditions {
     fn clustered(&self, pooled: Estimate, groups: &[Vec<f64>]) -> Estimate {
         self.resamples.clustered(pooled, &totals(groups))
     }
+}
+
+/// Rate of ones among all observations, with Wilson's interval.
+///
+/// Where all are 0 or all are 1, the samples of one simulation are no evidence beyond the simulation itself, and a bootstrap over
+/// simulations cannot tell how much they might differ: the interval counts the simulations that have an observation.
+fn pooled_rate(groups: &[Vec<f64>]) -> Estimate {
+    let all = groups.concat();
+    let pooled = rate(ones(&all), all.len());
+    let simulations = groups.iter().filter(|group| !group.is_empty()).count();
+    let unanimous = ones(&all) == 0 || ones(&all) == all.len();
+    if simulations < 2 || !unanimous {
+        return pooled;
+    }
+    let agreeing = if ones(&all) == 0 { 0 } else { simulations };
+    Estimate { interval: rate(agreeing, simulations).interval, ..pooled }
 }
 
 /// Number of ones.
@@ -193,4 +205,25 @@ pub fn baseline_estimates(records: &[BaselineRecord]) -> Vec<BaselineEstimate> {
             BaselineEstimate { method, clusters, coordination, dimension, ari }
         })
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_rate_of_0_or_1_counts_simulations_and_any_other_counts_samples() {
+        let interval = |groups: &[Vec<f64>]| pooled_rate(groups).interval;
+        // Three simulations with a hundred samples each, and one without an eligible one.
+        let wrong = [vec![0.0; 100], vec![0.0; 100], vec![0.0; 100], Vec::new()];
+        assert_eq!(interval(&wrong), rate(0, 3).interval);
+        assert_eq!((pooled_rate(&wrong).value, pooled_rate(&wrong).n), (Some(0.0), 300));
+        let right = [vec![1.0; 100], vec![1.0; 50]];
+        assert_eq!(interval(&right), rate(2, 2).interval);
+        // One simulation alone has nothing but its samples, and one sample that differs leaves the bootstrap something to see.
+        assert_eq!(interval(&right[..1]), rate(100, 100).interval);
+        let mixed = [vec![1.0; 100], vec![1.0, 0.0]];
+        assert_eq!(interval(&mixed), rate(101, 102).interval);
+        assert_eq!(interval(&[Vec::new(), Vec::new()]), None);
+    }
 }
