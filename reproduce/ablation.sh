@@ -1,4 +1,4 @@
 #!/usr/bin/env bash
-# Which departure of the authors' code does what, by the design in ablation.toml. Goes on where it was if it is stopped, and
-# writes results/ablation. See run.sh.
+# Ablation: what each departure of the authors' code changes, by the design in ablation.toml. An interrupted run continues.
+# Writes results/ablation. See run.sh.
 exec "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")/run.sh" ablation compare "$@"

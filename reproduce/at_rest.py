@@ -1,15 +1,15 @@
 #!/usr/bin/env python3
-"""What a body feels while all of its joints are locked: reproduce/at_rest.py FOLDER...
+"""Measure spurious touch: what a body feels while all of its joints are locked. Usage: reproduce/at_rest.py FOLDER...
 
-Each FOLDER is what `bodyschema simulate --out FOLDER` wrote. Where no fluid pushes, nothing acts on the body from outside and it
-starts at rest, so with all joints locked it should rest, too, and feel nothing; in a fluid that pushes, it glides on. Prints a
-line of CSV for each folder:
+Each FOLDER is one that `bodyschema simulate --out FOLDER` wrote. With one-way fluid coupling, no force acts on the body from
+outside. It starts at rest, and with all joints locked it should stay at rest and feel nothing; what it does feel comes from the
+engine's angular drift. With two-way coupling, it glides on. Prints a line of CSV for each folder:
 
-- locked: share of the samples at which no joint turns by more than 0.001 rad/s;
-- turn_locked, turn_else: median rate at which part 0 turns, rad/s, at those samples and at all others;
-- touch_locked, touch_else: median over samples of the mean root of the pressures, √Pa;
-- change: how much the roots of all pressures of a sample differ from those of the first folder, over these; the median over
-  samples. It says whether two ways to compute one movement agree.
+- locked: share of the samples at which no joint rotates faster than 0.001 rad/s;
+- turn_locked, turn_else: median angular speed of part 0, rad/s, at those samples and at all others;
+- touch_locked, touch_else: median over samples of the mean square root of the pressures, √Pa;
+- change: relative difference of the square roots of all pressures from those of the first folder, as the median over samples.
+  It shows whether two ways to compute one movement agree.
 
 Needs NumPy.
 """
@@ -37,7 +37,7 @@ def roots(folder):
 
 
 def change(first, other):
-    """None if they have not the same samples and sensors."""
+    """None if they do not have the same samples and sensors."""
     if first.shape != other.shape:
         return None
     felt = first.sum(axis=1)

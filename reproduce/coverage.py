@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""tarpaulin's JSON report -> a table of line coverage that names the lines no test runs.
+"""Turn tarpaulin's JSON report into a table of line coverage that names the lines that no test runs.
 
 Usage: coverage.py ROOT REPORT.json
 """

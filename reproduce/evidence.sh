@@ -1,7 +1,6 @@
 #!/usr/bin/env bash
-# The evidence that is too slow for the tests: recovery of trees drawn from the model, and line coverage.
-# Writes tests/evidence/. Takes about five minutes on two cores, and more where it must install
-# cargo-tarpaulin first.
+# Evidence that is too slow for the tests: recovery of trees drawn from the model, and line coverage. Writes tests/evidence/.
+# Takes about five minutes on two cores, and more if it must first install cargo-tarpaulin.
 set -euo pipefail
 root=$(CDPATH= cd -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")/.." && pwd)
 out=$root/tests/evidence

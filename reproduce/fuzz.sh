@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Feeds mutated files to every reader for SECONDS each (60 if not given), and what they accept to the stages that follow,
-# under AddressSanitizer. Needs a nightly compiler and cargo-fuzz, which it installs where missing. Ends at the first
-# finding with status 1; its input is then in fuzz/artifacts/.
+# Fuzzing: fuzz.sh [SECONDS]. Feeds mutated files to every reader for SECONDS each (default: 60), and passes what they accept to
+# the following stages, under AddressSanitizer. Needs a nightly compiler and cargo-fuzz, and installs them if they are
+# missing. Ends with status 1 at the first finding, whose input is then in fuzz/artifacts/.
 set -euo pipefail
 root=$(CDPATH= cd -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")/.." && pwd)
 seconds=${1:-60}
@@ -26,7 +26,7 @@ cargo +nightly fuzz build >"$files/log" 2>&1 || {
 for target in npy tables settings plot verify body; do
     echo "$target, $seconds s"
     mkdir -p "fuzz/corpus/$target"
-    # A world that the physics engine gave up is never freed: a leak, and on purpose.
+    # A world in which the physics engine failed is never freed: a leak on purpose.
     TMPDIR=$files cargo +nightly fuzz run "$target" "fuzz/corpus/$target" "fuzz/seeds/$target" -- \
         -max_total_time="$seconds" -timeout=20 -rss_limit_mb=2048 -max_len=2048 -detect_leaks=0 -print_final_stats=1 \
         >"$files/log" 2>&1 || {

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Installs the Debian packages that a build needs, where they are missing and it may. Run by the other
-# scripts; status 2 with one line on what to do where it may not.
+# Installs the Debian packages that a build needs, if they are missing. The other scripts run it. Without the rights to
+# install, it ends with status 2 and one line on what to do.
 set -euo pipefail
 
 command -v cargo >/dev/null || {

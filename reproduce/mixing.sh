@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# How the split-merge sampler mixes beside the paper's, whether it finds the parts of bodies that nothing was chosen on, and
-# whether its probabilities of edges are calibrated. Writes results/mixing (or the folder that is given).
+# Compares the mixing of the split-merge sampler with that of the paper's sampler, tests whether it recovers the parts in
+# simulations on which nothing was chosen, and whether its edge probabilities are calibrated. Writes results/mixing, or the
+# folder that is given: mixing.sh [FOLDER].
 set -euo pipefail
 root=$(CDPATH= cd -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")/.." && pwd)
 

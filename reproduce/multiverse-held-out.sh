@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# A smaller multiverse of another seed, by the same design: 104 specifications of 13 movements. Shares of claims that the large
-# one gives must be those of this one, too: reproduce/docs.py puts both beside each other. Writes results/multiverse-held-out.
+# A smaller multiverse of another seed, by the same design: 104 specifications of 13 movements. It should reproduce each claim in
+# about the same share of specifications as the large one: reproduce/docs.py compares both. Writes
+# results/multiverse-held-out.
 set -euo pipefail
 root=$(CDPATH= cd -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")/.." && pwd)
 

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
-# A multiverse of replications, by the design in multiverse.toml: takes hours, goes on where it was if it is stopped, and
-# writes results/multiverse. With --shard I/N a part of it, and with --gather the tables of all parts. See run.sh.
+# Multiverse analysis: many reasonable interpretations of the paper, by the design in multiverse.toml. Takes hours; an
+# interrupted run continues. Writes results/multiverse. With --shard I/N it runs a part, and with --gather it writes the tables
+# of all parts. See run.sh.
 exec "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")/run.sh" multiverse multiverse "$@"

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Builds the physics engine, Open Dynamics Engine 0.16.2 in double precision, from its source, for machines that have no package of
-# it: ode-from-source.sh PREFIX [TARBALL]. It installs into PREFIX, and prints what to set so that cargo finds it there. Without
-# TARBALL it downloads Debian's copy of the source. Needs a C++ compiler, make and curl, and takes about two minutes of a core.
+# Builds the physics engine, Open Dynamics Engine 0.16.2 in double precision, from source, for machines without a package of it:
+# ode-from-source.sh PREFIX [TARBALL]. It installs into PREFIX, and prints the environment variables with which cargo finds it
+# there. Without TARBALL it downloads Debian's copy of the source. Needs a C++ compiler, make and curl, and takes about two minutes of a core.
 # Status: 0 built, 2 on an error.
 set -euo pipefail
 
@@ -27,7 +27,7 @@ if [ -z "$tarball" ]; then
     tarball=$work/ode.tar.gz
     curl --silent --show-error --fail --location --output "$tarball" "$url" || fail "could not download $url; give the file as TARBALL"
 fi
-echo "$sha256  $tarball" | sha256sum --check --quiet || fail "$tarball is not the source of version $version that results rest on"
+echo "$sha256  $tarball" | sha256sum --check --quiet || fail "$tarball is not the source of version $version that the results were computed with"
 
 # Nothing here asks for collisions, so that libccd is not needed; no demos. Debian's flags but for hardening, which does not change
 # results; -march and -ffast-math would.

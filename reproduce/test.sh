@@ -1,6 +1,5 @@
 #!/usr/bin/env bash
-# Installs what the tests need and runs them. Arguments go to `cargo test`. The build is that of the experiments, so that
-# nothing is compiled twice.
+# Installs what the tests need and runs them. Arguments go to `cargo test`. Tests and experiments share one build.
 set -euo pipefail
 root=$(CDPATH= cd -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")/.." && pwd)
 

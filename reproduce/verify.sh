@@ -1,13 +1,12 @@
 #!/usr/bin/env bash
-# Moves a body for a short time, and draws the body schema from the reference body maps of both experiments, and compares with
-# what stands beside them: whether the physics engine and the inference do on this machine what they did where the references were
-# made. Takes half a minute after the build. Status: 0 they do, 1 they do not, 2 on an error.
+# Whether the physics engine and the inference give the reference results on this machine. Simulates a short movement, samples
+# body schemas from the reference body maps of both experiments, and compares both with reproduce/reference. Takes half a minute
+# after the build. Status: 0 they agree, 1 they do not, 2 on an error.
 set -euo pipefail
 root=$(CDPATH= cd -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")/.." && pwd)
 manifest=(--release --locked --manifest-path "$root/Cargo.toml")
 
-"$root/reproduce/install.sh" || exit 2
-cargo build --quiet "${manifest[@]}" || exit 2
+"$root/reproduce/build.sh" || exit 2
 
 status=0
 reference=$root/reproduce/reference/movement

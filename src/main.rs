@@ -1,5 +1,5 @@
-//! Start the command line `bodyschema`, which has one subcommand for each stage. Exit status, as `diff` has it: 0 done
-//! and every claim reproduced, 1 some claim not, 2 an error, 130 interrupted.
+//! Start the command line `bodyschema`, which has one subcommand for each stage. Exit status, as `diff` has it: 0 done (of an
+//! experiment: the headline is reproduced), 1 it is not, or results differ, 2 an error, 130 interrupted.
 
 use std::process::ExitCode;
 

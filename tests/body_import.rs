@@ -81,7 +81,7 @@ fn a_mistake_is_one_line_and_leaves_no_file() {
     let out = folder.path().join("body.toml");
     for (name, expected) in [
         ("mesh.xml", "mesh.xml: line 6: geom of body `arm` is of type `mesh`; make it a box, sphere"),
-        ("cut.xml", "cut.xml: this is no well-formed XML"),
+        ("cut.xml", "cut.xml: this is not well-formed XML"),
         ("loop.urdf", "loop.urdf: link `a` is in a loop of joints"),
         ("slide.urdf", "slide.urdf: link `b`: its joint is `prismatic`"),
         ("number.urdf", "number.urdf: line 2: sphere of link `a` has radius `wide`, which must be a number"),
@@ -99,7 +99,7 @@ fn a_mistake_is_one_line_and_leaves_no_file() {
     fs::copy(data("arm.xml"), &robot).unwrap();
     let output = import(&robot, &[], &robot);
     assert_eq!(output.status.code(), Some(2));
-    assert!(String::from_utf8(output.stderr).unwrap().contains("is the file that is read"));
+    assert!(String::from_utf8(output.stderr).unwrap().contains("is the input file"));
     assert_eq!(fs::read(&robot).unwrap(), fs::read(data("arm.xml")).unwrap());
     let both = import(&data("arm.xml"), &["--per-area", "9", "--sensors-per-part", "9"], &out);
     assert_eq!(both.status.code(), Some(2));

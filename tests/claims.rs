@@ -1,4 +1,4 @@
-//! `docs/claims.md` leads from every claim and sentence of the paper to code and test that exist, and is the page that
+//! `docs/shown/claims.md` leads from every claim and sentence of the paper to code and test that exist, and is the page that
 //! `reproduce/claims.py` makes of the committed results.
 
 use std::collections::BTreeSet;
@@ -99,7 +99,7 @@ fn the_page_is_that_of_the_committed_results() {
         let script = root.join("reproduce/claims.py");
         Command::new("python3").arg(script).arg("--check").arg(copy).output().unwrap()
     };
-    let page = read("docs/claims.md");
+    let page = read("docs/shown/claims.md");
     let output = is_fresh(&page);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let stale = page.replacen("**not reproduced**", "**reproduced**", 1);

@@ -57,6 +57,28 @@ fn the_manifest_is_what_is_rerun() {
     assert!(named.iter().all(|file| root().join(file).is_file()), "{named:?}");
 }
 
+/// The minutes of codecheck.toml are also in the manifest and in the table of docs/check.md.
+#[test]
+fn minutes_are_the_same_everywhere() {
+    let rules = rules();
+    let read = |file: &str| fs::read_to_string(root().join(file)).unwrap();
+    let (manifest, page) = (read("codecheck.yml"), read("docs/check.md"));
+    let build = rules["build_minutes"].as_integer().unwrap();
+    assert!(page.contains(&format!("| build | {build} |")), "{build}");
+    let mut total = build;
+    for part in rules["part"].as_array().unwrap() {
+        let (name, minutes) = (text(part, "name").unwrap(), part["minutes"].as_integer().unwrap());
+        let line = format!("--only {name}; {minutes} min");
+        assert!(manifest.contains(&line), "{line}");
+        let on_request = part.get("on_request").is_some();
+        let row = format!("| `{name}`{} | {minutes} |", if on_request { ", only if named" } else { "" });
+        assert!(page.contains(&row), "{row}");
+        total += if on_request { 0 } else { minutes };
+    }
+    assert!(manifest.contains(&format!("this takes {total} min in all")), "{total}");
+    assert!(page.contains(&format!("| all of these | {total} |")), "{total}");
+}
+
 #[test]
 fn commands_exist() {
     for part in rules()["part"].as_array().unwrap() {
@@ -166,6 +188,29 @@ fn on_a_machine_of_the_same_kind_bytes_are_the_same() {
     assert!(said.contains("on a machine of the same kind the bytes must be the same"), "{said}");
     fs::write(&witness, "another map").unwrap();
     assert_eq!(compare(folder.path(), "exp2").unwrap().0, Some(0));
+}
+
+/// The confirmation has the files of both experiments, in folders of their names. Here it has those of experiment 2.
+#[test]
+fn a_part_that_is_like_others_is_compared_as_they_are() {
+    let folder = rerun();
+    let rules = folder.path().join("reproduce/codecheck.toml");
+    let toml = fs::read_to_string(&rules).unwrap();
+    let like = r#"like = ["exp1", "exp2"]"#;
+    assert!(toml.contains(like));
+    fs::write(&rules, toml.replace(like, r#"like = ["exp2"]"#)).unwrap();
+    let Some((status, said)) = compare(folder.path(), "confirm") else { return };
+    assert_eq!((status, said.lines().count()), (Some(2), 1), "{said}");
+    assert!(said.contains("docs/shown/confirm/exp2 is missing"), "{said}");
+
+    for base in ["docs/shown", "results"] {
+        let base = folder.path().join(base);
+        fs::create_dir(base.join("confirm")).unwrap();
+        fs::rename(base.join("exp2"), base.join("confirm/exp2")).unwrap();
+    }
+    let (status, said) = compare(folder.path(), "confirm").unwrap();
+    assert_eq!(status, Some(0), "{said}");
+    assert!(said.contains("confirm/exp2/claims.csv") && said.contains("5 same bytes"), "{said}");
 }
 
 #[test]

@@ -79,7 +79,7 @@ fn one_command_finds_parts_and_tree() {
     let (told, warned) =
         (String::from_utf8(output.stdout).unwrap(), String::from_utf8(output.stderr).unwrap());
     assert!(told.starts_with("5 parts of 117 sensors"), "{told}");
-    assert!(told.contains("adjusted Rand index 1.000, tree right"), "{told}");
+    assert!(told.contains("adjusted Rand index 1.000, true tree recovered"), "{told}");
     assert!(warned.contains("3 of 120 sensors are left out (the first, 0, is dead)"), "{warned}");
     let faults: Vec<String> = rows(&at("found/dropped.csv")).iter().map(|row| row["fault"].clone()).collect();
     assert_eq!(faults, ["dead", "constant", "not a number"]);
@@ -120,12 +120,12 @@ fn stages_by_hand_repeat_the_experiment() {
         folder.path(),
         "tree body/tactile.npy --parts body/labels.csv --labels body/labels.csv --tree body/tree.csv --out joined",
     );
-    assert!(told.contains("adjusted Rand index 1.000, tree right"), "{told}");
+    assert!(told.contains("adjusted Rand index 1.000, true tree recovered"), "{told}");
     assert_eq!(header(&folder.path().join("joined/tree.csv")), "child,parent,confidence");
     assert_eq!(rows(&folder.path().join("joined/tree.csv")).len(), 4);
     assert_eq!(header(&folder.path().join("joined/edges.csv")), "part,other,agreement,confidence,in_tree");
     assert_eq!(rows(&folder.path().join("joined/edges.csv")).len(), 10);
-    assert!(summary.contains("tree right among eligible draws"), "{summary}");
+    assert!(summary.contains("eligible samples that recover the true tree"), "{summary}");
 
     assert_eq!(header(&at("body/labels.csv")), "sensor,part");
     assert_eq!(header(&at("body/tree.csv")), "child,parent");
@@ -167,7 +167,10 @@ fn maps_of_less_stress_by_hand_repeat_the_experiment() {
         for option in [format!("--method {method}"), "--settings mine.toml".to_owned()] {
             let distance = format!("{method}/simulation-1/distance.npy");
             let said = succeed(folder.path(), &format!("map {distance} --dims 4 {option} --out map.npy"));
-            assert!(said.contains("its stress-1 is 0.") && said.contains("of the classical map"), "{said}");
+            assert!(
+                said.contains("its stress-1 is 0.") && said.contains("for the start, the classical map"),
+                "{said}"
+            );
             let whole = folder.path().join(method).join("simulation-1/body-map-4.npy");
             assert_eq!(fs::read(folder.path().join("map.npy")).unwrap(), fs::read(whole).unwrap());
         }
@@ -312,7 +315,7 @@ fn the_split_merge_sampler_gives_a_posterior_of_parts_and_edges() {
     let command = "infer stairs.npy --sampler split-merge --settings one.toml --seed 2718 --labels labels.csv \
                    --tree tree.csv --out out";
     let told = succeed(folder.path(), command);
-    assert!(told.contains("number of parts: 5 (100.0 %)") && told.contains("tree right"), "{told}");
+    assert!(told.contains("number of parts: 5 (100.0 %)") && told.contains("true tree recovered"), "{told}");
     assert!(told.contains("└─ "), "a drawing of the tree: {told}");
     assert_eq!(header(&at("posterior.csv")), "parts,probability");
     let total: f64 =
@@ -503,7 +506,7 @@ fn a_mistake_is_one_line_that_says_what_and_where_and_status_2() {
         ("infer deep.npy --components 1000 --out s", "schema.components = 1000 in 200 dimensions"),
         (
             "infer clusters.npy --keep all --sweeps 100001 --burn-in 1 --chains 11 --out s",
-            "at most 1000000 draws",
+            "at most 1000000 samples",
         ),
         ("plot absent", "absent/figures: has no table of a figure"),
         ("plot no-figure", "has no table of a figure"),

@@ -1,5 +1,5 @@
-//! What README and docs say of files and settings is so: links lead somewhere, equations have files, and DEVIATIONS.md has
-//! the values of `reproduce/paper.toml`.
+//! What README and docs say of files and settings is so: links lead somewhere, equations have files, and docs/settings.md
+//! has the values of `reproduce/paper.toml`.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -7,9 +7,6 @@ use std::path::{Path, PathBuf};
 
 /// Numbered equations of the paper.
 const EQUATIONS: usize = 27;
-
-/// Most words of the README.
-const WORDS: usize = 900;
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -21,17 +18,13 @@ fn read(name: &str) -> String {
 
 /// The pages that a reader comes to.
 fn pages() -> Vec<PathBuf> {
-    let names = [
-        "README.md",
-        "CONTRIBUTING.md",
-        "CHANGELOG.md",
-        "DEVIATIONS.md",
-        "tests/README.md",
-        "benches/README.md",
-    ];
+    let names = ["README.md", "CONTRIBUTING.md", "CHANGELOG.md", "tests/README.md", "benches/README.md"];
     let docs = fs::read_dir(root().join("docs")).unwrap().map(|entry| entry.unwrap().path());
     let docs = docs.filter(|path| path.extension().is_some_and(|extension| extension == "md"));
-    names.into_iter().map(|name| root().join(name)).chain(docs).collect()
+    let shown =
+        fs::read_dir(root().join("docs/shown")).unwrap().map(|entry| entry.unwrap().path().join("README.md"));
+    let shown = shown.filter(|page| page.is_file());
+    names.into_iter().map(|name| root().join(name)).chain(docs).chain(shown).collect()
 }
 
 /// Targets of the links and pictures of a page, without those to other sites.
@@ -73,15 +66,8 @@ fn every_link_leads_somewhere() {
         assert_eq!(broken(&page, &text), [""; 0], "{}", page.display());
     }
     let page = root().join("README.md");
-    let text =
-        "[a](docs/nowhere.md) [b](README.md#no-such-heading) ![c](docs/files.md) [d](https://example.org)";
+    let text = "[a](docs/nowhere.md) [b](README.md#no-such-heading) ![c](docs/reference.md) [d](https://example.org)";
     assert_eq!(broken(&page, text), ["docs/nowhere.md", "README.md#no-such-heading"]);
-}
-
-#[test]
-fn the_readme_is_short() {
-    let words = read("README.md").split_whitespace().count();
-    assert!(words <= WORDS, "the README has {words} words");
 }
 
 /// Equations that a table names in its first column, as `3`, `3, 4` or `3 to 5`.
@@ -102,18 +88,21 @@ fn equations(table: &str) -> BTreeSet<usize> {
 
 #[test]
 fn every_equation_of_the_paper_has_a_file_that_exists() {
-    let table = read("docs/equations.md");
-    let missing: Vec<usize> = (1..=EQUATIONS).filter(|number| !equations(&table).contains(number)).collect();
+    let page = read("docs/method.md");
+    let (_, rest) = page.split_once("\n## Equations in the code\n").expect("the section with the table");
+    // Tables of other sections may begin with other numbers.
+    let table = rest.split("\n## ").next().unwrap();
+    let missing: Vec<usize> = (1..=EQUATIONS).filter(|number| !equations(table).contains(number)).collect();
     assert_eq!(missing, [0; 0], "equations without a row");
-    let files: Vec<String> = links(&table).into_iter().filter(|target| target.ends_with(".rs")).collect();
+    let files: Vec<String> = links(table).into_iter().filter(|target| target.ends_with(".rs")).collect();
     assert!(files.len() >= 15, "{files:?}");
     assert!(files.iter().all(|file| root().join("docs").join(file).exists()), "{files:?}");
     assert_eq!(equations("| 3 | a |\n| 5 to 7, 9 | b |\nnine 11"), BTreeSet::from([3, 5, 6, 7, 9]));
 }
 
 #[test]
-fn deviations_have_every_setting_that_is_ours_with_its_value() {
-    let page = read("DEVIATIONS.md");
+fn the_page_of_settings_has_every_setting_that_is_ours_with_its_value() {
+    let page = read("docs/settings.md");
     let mut section = String::new();
     let mut ours = 0;
     for line in read("reproduce/paper.toml").lines() {
@@ -125,8 +114,8 @@ fn deviations_have_every_setting_that_is_ours_with_its_value() {
         {
             let (name, value) = (name.trim(), value.trim().trim_matches('"'));
             let row = page.lines().find(|row| row.contains(&format!("`{section}.{name}`")));
-            let row = row.unwrap_or_else(|| panic!("DEVIATIONS.md has no row of {section}.{name}"));
-            assert!(row.contains(value), "{section}.{name} is {value}, but DEVIATIONS.md says {row}");
+            let row = row.unwrap_or_else(|| panic!("docs/settings.md has no row of {section}.{name}"));
+            assert!(row.contains(value), "{section}.{name} is {value}, but docs/settings.md says {row}");
             ours += 1;
         }
     }

@@ -211,7 +211,7 @@ fn what_cannot_be_done_is_refused_in_one_line() {
     one_line(refused(&DESIGN.replace("simulations = 2", "simulations = 1"), "--out out", "one simulation"));
     let twice = DESIGN
         .replace("spin_damping = 0.1 }", "spin_damping = 0.1 }\nsettings = { motion = { error = \"raw\" } }");
-    one_line(refused(&twice, "--out out", "gains are of a torque"));
+    one_line(refused(&twice, "--out out", "gains are those of a torque"));
     for shard in ["3/2", "0/2", "1/0", "x", "-1/2"] {
         refused(DESIGN, &format!("--shard={shard} --out out"), "a shard is I/N");
     }
@@ -224,5 +224,5 @@ fn what_cannot_be_done_is_refused_in_one_line() {
     let claims = at("damaged/specifications/000002/claims.csv");
     let cut = fs::read_to_string(&claims).unwrap().lines().take(2).collect::<Vec<_>>().join("\n");
     fs::write(&claims, cut).unwrap();
-    one_line(refused(DESIGN, "--gather --out damaged", "run it again by --only 2"));
+    one_line(refused(DESIGN, "--gather --out damaged", "run it again with --only 2"));
 }

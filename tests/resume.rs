@@ -194,7 +194,7 @@ fn damaged_and_foreign_parts_are_done_again_with_a_line_that_says_so() {
     let bytes = fs::read(&path).unwrap();
     fs::write(&path, &bytes[..bytes.len() / 2]).unwrap();
     let said = place.finish("exp1", "cut");
-    assert!(said.contains("dpgmm-2.json: is not a checkpoint; this part is done again"), "{said}");
+    assert!(said.contains("dpgmm-2.json: is not a checkpoint; this part is run again"), "{said}");
     assert!(said.contains("continuing from what an earlier run finished"), "{said}");
     same(&place.out("cut"), &expected, "a part cut short");
 
@@ -202,14 +202,14 @@ fn damaged_and_foreign_parts_are_done_again_with_a_line_that_says_so() {
     let map = place.out("swapped").join("simulation-1/body-map.npy");
     fs::write(&map, fs::read(place.out("whole").join("simulation-2/body-map.npy")).unwrap()).unwrap();
     let said = place.finish("exp1", "swapped");
-    assert!(said.contains("body-map.npy: has changed or is missing; it is made again"), "{said}");
+    assert!(said.contains("body-map.npy: has changed or is missing; it is computed again"), "{said}");
     same(&place.out("swapped"), &expected, "a body map of another simulation");
 
     leave_after(&place, "other", "simulation-1/dpgmm-lj-2.json", "-KILL");
     fs::write(place.out("other.toml"), SMALL.replace("seed = 5", "seed = 6")).unwrap();
     let output = place.start("exp1", "other", "other.toml").wait_with_output().unwrap();
     let said = String::from_utf8(output.stderr).unwrap();
-    assert!(said.contains("other settings or of another program are not used"), "{said}");
+    assert!(said.contains("other settings or of another version of the program are ignored"), "{said}");
     let whole = place.start("exp1", "whole-other", "other.toml").wait_with_output().unwrap();
     assert!(whole.status.code().unwrap() <= 1);
     same(&place.out("other"), &files(&place.out("whole-other")), "another seed");
@@ -238,7 +238,7 @@ fn a_map_for_each_dimension_is_taken_up_again() {
     leave_after(&place, "lost", "simulation-1/dpgmm-2.json", "-KILL");
     fs::remove_file(place.out("lost").join(map(2))).unwrap();
     let said = place.finish("exp1", "lost");
-    assert!(said.contains("body-map-2.npy: has changed or is missing; it is made again"), "{said}");
+    assert!(said.contains("body-map-2.npy: has changed or is missing; it is computed again"), "{said}");
     same(&place.out("lost"), &expected, "a map that is missing");
 }
 

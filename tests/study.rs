@@ -225,7 +225,9 @@ fn a_search_keeps_the_best_and_shows_which_claims_hold_together() {
     // As many terms as rows for each candidate and round.
     assert_eq!(String::from_utf8(one["credits.csv"].clone()).unwrap().lines().count(), 1 + 2 * 5);
     assert!(
-        String::from_utf8(one["search.md"].clone()).unwrap().contains("How often two claims hold together")
+        String::from_utf8(one["search.md"].clone())
+            .unwrap()
+            .contains("candidates that reproduce both claims")
     );
     succeed(folder.path(), "verify one");
     succeed(folder.path(), "search --design design.toml --jobs 2 --out two");
@@ -294,9 +296,9 @@ fn what_is_no_design_is_refused_in_one_line() {
     };
     let (study, search) = (sensitivity_design(), search_design());
     refused("sensitivity", "seed = 3".to_owned(), "design.toml: ");
-    refused("sensitivity --only fins", study.clone(), "has no part `fins`; it has levels, gains");
-    refused("sensitivity", study.replace("\"gains\"", "\"levels\""), "`levels` is no name");
-    refused("sensitivity", study.replace("\"gains\"", "\"../gains\""), "`../gains` is no name");
+    refused("sensitivity --only fins", study.clone(), "has no [[part]] named `fins`; it has levels, gains");
+    refused("sensitivity", study.replace("\"gains\"", "\"levels\""), "`levels` cannot name a [[part]]");
+    refused("sensitivity", study.replace("\"gains\"", "\"../gains\""), "`../gains` cannot name a [[part]]");
     refused("sensitivity", study.replace("quantise.levels", "quantise.layers"), "`quantise.layers`");
     refused("sensitivity", study.replace("levels = 3", "levels = 1"), "quantise.levels");
     refused("sensitivity", study.replace("levels = 3", "layers = 3"), "unknown setting `quantise.layers`");

@@ -185,7 +185,7 @@ fn other_draws_are_compared_by_their_rates() {
     let (status, printed) = compare(draws(80, 30));
     assert_eq!(status, 1, "{printed}");
     assert!(
-        printed.contains("trees right 30 of 80, reference 60 of 80: 4.8 standard errors apart"),
+        printed.contains("correct trees 30 of 80, reference 60 of 80: 4.8 standard errors apart"),
         "{printed}"
     );
     let (status, printed) = compare(draws(80, 60).replace("chain,parts", "chain,pieces"));

@@ -142,12 +142,13 @@ fn infer_all(
 
 fn page(conditions: &[Condition], chains: usize) -> String {
     let mut lines = vec![
-        "## Bodies that nothing was chosen on\n".to_owned(),
+        "## Simulations that nothing was chosen on\n".to_owned(),
         format!(
-            "{BODIES} bodies as in the former default ([no-fluid.toml](reproduce/no-fluid.toml); seed {SEED}), maps of the distances, {chains} chains each that start apart: from one \
-             part, from k-means, and from labels at random. What a chain says is the consensus of the later half of its draws. \
-             The share of chains that have exactly the true parts, every sensor of them, after so many sweeps; intervals are \
-             Wilson's of {BODIES} trials, the bodies. [All chains](bodies-chains.csv).\n"
+            "{BODIES} simulations of a former default ([no-fluid.toml](reproduce/no-fluid.toml); seed {SEED}), with maps of the \
+             distances and {chains} chains each. Chains start from one part, from k-means, and from labels at random. The \
+             estimate of a chain is the consensus of the later half of its samples. The table has the share of chains with \
+             all sensors on their true parts, after so many sweeps. Intervals are Wilson's of {BODIES} trials, the \
+             simulations. [All chains](bodies-chains.csv).\n"
         ),
     ];
     let sweeps = SWEEPS.map(|sweeps| format!("{sweeps} sweeps"));
@@ -165,9 +166,9 @@ fn page(conditions: &[Condition], chains: usize) -> String {
         row(head.into_iter().chain(SWEEPS.map(|sweeps| percent(&condition.exact_after(sweeps)))))
     }));
     lines.push(format!(
-        "\nWhat all chains of a body say together, from sweep {} on. Mixed: `infer` would not warn. The probability is what \
-         the posterior gives its likeliest tree, right or wrong, on the mean of the bodies whose consensus is exact; a sweep was \
-         timed on body 1. [All bodies](bodies-posterior.csv).\n",
+        "\nThe estimates of all chains of a simulation together, from sweep {} on. Mixed: `infer` would not warn. The \
+         probability is that of the most probable tree, right or wrong, on average over the simulations whose consensus is \
+         exact. A sweep was timed on simulation 1. [All simulations](bodies-posterior.csv).\n",
         SWEEPS[SWEEPS.len() - 1] / 2 + 1
     ));
     lines.push(row([

@@ -63,11 +63,11 @@ pub fn study(folder: &Path) -> Result<String, Box<dyn Error>> {
     let mut lines = vec![
         "## Bodies drawn from the model\n".to_owned(),
         format!(
-            "{BODIES} bodies for each d, of {PARTS} parts with {SENSORS} sensors each (seed {SEED}): Gaussians, tree and joints are drawn \
-             from the model, and the tree is inferred with the same prior, once over the true parts and once over the parts \
-             that the sampler finds, where these are the true ones (as many, ARI from {SAME_PARTS}). Brier score: the mean of \
-             (probability − what is there)² over all pairs of parts; that of a single tree takes its edges for certain. \
-             Intervals over bodies. [All pairs](edges.csv).\n"
+            "{BODIES} bodies for each d, of {PARTS} parts with {SENSORS} sensors each (seed {SEED}), whose Gaussians, tree and \
+             joints are drawn from the model. The tree is inferred with the same prior, over the true parts and over the parts \
+             that the sampler finds. The latter count where they are the true ones (as many, ARI from {SAME_PARTS}). Brier \
+             score: the mean of (probability − what is there)² over all pairs of parts. That of a single tree takes its edges \
+             for certain. Intervals are over bodies. [All pairs](edges.csv).\n"
         ),
         row([
             "d",

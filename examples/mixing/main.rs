@@ -36,11 +36,15 @@ fn main() -> Result<(), Box<dyn Error>> {
     let page = [
         "# How the split–merge sampler mixes\n".to_owned(),
         format!(
-            "`bodyschema infer --sampler split-merge` ([split-merge.md](docs/split-merge.md)), measured by `reproduce/mixing.sh` at \
-             revision {}. All tables are the same on machines of one kind but for seconds, which are those of one core of the \
-             machine that wrote this page, beside whatever else it did.\n",
+            "All simulations here are of an older configuration, [no-fluid.toml](reproduce/no-fluid.toml), with one-way fluid \
+             coupling, four levels for each sensor, and maps of the distances. They say nothing about today's default. Measured \
+             by `reproduce/mixing.sh` at revision {}.\n",
             bodyschema::internals::REVISION
         ),
+        "How fast does `bodyschema infer --sampler split-merge` mix, does it find the parts, and are its probabilities \
+         calibrated? [method.md](docs/method.md#the-splitmerge-sampler) explains it, and has the answer in short. All tables \
+         are the same on machines of one kind, but for seconds. These are of one core of the machine that wrote this page.\n"
+            .to_owned(),
         bodies::study(folder)?,
         traces::study(folder)?,
         edges::study(folder)?,

@@ -146,7 +146,7 @@ fn chains(name: &'static str, map: &BodyMap) -> Result<Vec<State>, Box<dyn Error
     Ok(states)
 }
 
-/// log p(x, z) of the target of docs/split-merge.md, up to a constant, for the labels of either sampler. The factor of the
+/// log p(x, z) of the target of docs/method.md, up to a constant, for the labels of either sampler. The factor of the
 /// joints, M(μ, Σ), is averaged over draws of the Gaussians.
 fn log_posterior(points: &Points, prior: &NormalInverseWishart, labels: &[usize]) -> Result<f64, Rounding> {
     const DRAWS: usize = 100;
@@ -250,11 +250,12 @@ fn page(maps: &[&str], states: &[State], timings: &[Timing]) -> String {
     let mut lines = vec![
         "## Both samplers on the same maps\n".to_owned(),
         format!(
-            "{CHAINS} chains of each, with the same prior, from the same starts (one part, k-means, labels at random; seed {SEED}). \
-             The best is the partition of highest log p(x, z), joints and trees included, that any chain of either sampler had; a chain is at it with an \
-             adjusted Rand index from {AT_BEST} and as many parts. Thin lines are chains, thick ones their means. \
-             That score is the target of the split-merge sampler: that of the equations has ten components, \
-             and its tree is the likeliest. A chain that mixes need not be at the best. [All states](traces.csv), [seconds](traces-seconds.csv).\n"
+            "{CHAINS} chains of each, with the same prior, from the same starts (one part, k-means, labels at random; seed \
+             {SEED}). The best is the partition of highest log p(x, z), joints and trees included, that any chain of either \
+             sampler had. A chain is at it with an adjusted Rand index from {AT_BEST} and as many parts. Thin lines are \
+             chains, thick ones their means. That score is the target of the split-merge sampler. The sampler of the equations \
+             has ten components, and its tree is the most probable one. A chain that mixes need not be at the best. \
+             [All states](traces.csv), [seconds](traces-seconds.csv).\n"
         ),
         "![Number of parts, log posterior, and share of chains at the best, over seconds](figures/traces.svg)\n".to_owned(),
         row(["map", "sampler", "ms a sweep", "sweeps", "seconds", "chains at the best"]),

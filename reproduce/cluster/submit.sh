@@ -29,12 +29,12 @@ while [ $# -gt 0 ]; do
             shift 2 ;;
         --) shift; break ;;
         -h | --help) usage; exit 0 ;;
-        *) echo "submit.sh: $1 is no option; see --help" >&2; exit 2 ;;
+        *) echo "submit.sh: $1 is not an option; see --help" >&2; exit 2 ;;
     esac
 done
 [[ $shards =~ ^[1-9][0-9]*$ ]] || { echo "submit.sh: --shards must be a positive number; see --help" >&2; exit 2; }
 [ -n "$out" ] || { echo "submit.sh: --out is missing; see --help" >&2; exit 2; }
-[ -r "$design" ] || { echo "submit.sh: $design: cannot be read; name a design by --design" >&2; exit 2; }
+[ -r "$design" ] || { echo "submit.sh: $design: cannot be read; give a design with --design" >&2; exit 2; }
 command -v sbatch >/dev/null || { echo "submit.sh: there is no sbatch here; log in to a node that submits jobs" >&2; exit 2; }
 
 mkdir -p -- "$out/logs"

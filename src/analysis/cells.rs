@@ -64,7 +64,7 @@ pub fn number_or_empty<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Opt
             if text.is_empty() {
                 return Ok(None);
             }
-            text.parse().map(Some).map_err(|_| E::custom(format!("`{text}` is no number")))
+            text.parse().map(Some).map_err(|_| E::custom(format!("`{text}` is not a number")))
         }
     }
 

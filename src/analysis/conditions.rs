@@ -39,23 +39,28 @@ impl Conditions {
         Self::new(records.collect(), 1, 0)
     }
 
-    /// An extension of the paper's way of counting: of each condition and simulation only the draw of
+    /// An extension of the paper's way of counting: of each condition and simulation only the most probable sample, that of
     /// highest log posterior, whose tree counts whether or not its parts are right.
+    ///
+    /// Samples with the same labels have the same log posterior but for rounding, and may have different trees: of those the
+    /// first chain's counts, so that rounding decides nothing.
     pub fn best(&self) -> Self {
-        let mut best: Vec<Record> = Vec::new();
+        let mut groups: Vec<Vec<&Record>> = Vec::new();
         for record in &self.records {
-            let same = |other: &&mut Record| {
-                (other.simulation, other.condition()) == (record.simulation, record.condition())
+            let same = |group: &&mut Vec<&Record>| {
+                (group[0].simulation, group[0].condition()) == (record.simulation, record.condition())
             };
-            match best.iter_mut().rev().find(same) {
-                None => best.push(Record { eligible: true, ..*record }),
-                Some(kept) if record.log_posterior > kept.log_posterior => {
-                    *kept = Record { eligible: true, ..*record }
-                }
-                Some(_) => {}
+            match groups.iter_mut().rev().find(same) {
+                None => groups.push(vec![record]),
+                Some(group) => group.push(record),
             }
         }
-        Self { records: best, simulations: self.simulations, resamples: self.resamples.clone() }
+        let best = |group: &Vec<&Record>| Record { eligible: true, ..*most_probable(group) };
+        Self {
+            records: groups.iter().map(best).collect(),
+            simulations: self.simulations,
+            resamples: self.resamples.clone(),
+        }
     }
 
     /// All conditions that were run, by mixture, then p, then d.
@@ -150,6 +155,17 @@ impl Conditions {
     }
 }
 
+/// The first of the samples whose log posterior is the highest but for rounding; of samples without one, the first.
+fn most_probable<'a>(samples: &[&'a Record]) -> &'a Record {
+    /// Far above the rounding of a sum over some thousand sensors, and far below what one sensor in another part changes.
+    const ROUNDING: f64 = 1e-9;
+    let highest = samples.iter().filter_map(|sample| sample.log_posterior).fold(f64::NEG_INFINITY, f64::max);
+    let near = |sample: &&&Record| {
+        sample.log_posterior.is_some_and(|value| value >= highest - ROUNDING * highest.abs().max(1.0))
+    };
+    samples.iter().find(near).unwrap_or(&samples[0])
+}
+
 /// Rate of ones among all observations, with Wilson's interval.
 ///
 /// Where all are 0 or all are 1, the samples of one simulation are no evidence beyond the simulation itself, and a bootstrap over
@@ -210,6 +226,36 @@ pub fn baseline_estimates(records: &[BaselineRecord]) -> Vec<BaselineEstimate> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn sample(chain: usize, log_posterior: Option<f64>) -> Record {
+        Record {
+            simulation: 1,
+            coordination: 0.9,
+            dimension: 14,
+            model: crate::stages::schema::Model::DpgmmLj,
+            chain,
+            sweep: 1,
+            parts: 5,
+            log_posterior,
+            ari: 1.0,
+            eligible: false,
+            tree_correct: true,
+        }
+    }
+
+    #[test]
+    fn of_samples_that_differ_by_rounding_the_first_is_the_most_probable() {
+        let best = |values: &[Option<f64>]| {
+            let records: Vec<Record> =
+                values.iter().enumerate().map(|(chain, value)| sample(chain, *value)).collect();
+            let best = Conditions::new(records, 1, 1).best();
+            assert!(best.records.len() == 1 && best.records[0].eligible);
+            best.records[0].chain
+        };
+        assert_eq!(best(&[Some(9000.0), Some(9123.4 - 1e-8), Some(9123.4), Some(9123.39)]), 1);
+        assert_eq!(best(&[Some(-5.0), None, Some(-4.0)]), 2);
+        assert_eq!(best(&[None, None]), 0);
+    }
 
     #[test]
     fn a_rate_of_0_or_1_counts_simulations_and_any_other_counts_samples() {

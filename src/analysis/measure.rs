@@ -222,7 +222,7 @@ fn best(rates: impl Iterator<Item = (f64, Estimate)>, published: f64, symbol: &s
         rates.filter_map(|(place, rate)| Some((place, rate.value?, rate.n))).collect();
     let n = rates.iter().map(|(_, _, n)| n).sum();
     let Some(highest) = rates.iter().map(|(_, rate, _)| *rate).reduce(f64::max) else {
-        return ("all, since none is eligible".to_owned(), Estimate::default());
+        return ("all, since no sample is eligible".to_owned(), Estimate::default());
     };
     let best: Vec<f64> =
         rates.iter().filter(|(_, rate, _)| *rate == highest).map(|(place, ..)| *place).collect();

@@ -25,17 +25,6 @@ pub enum OneBody {
     Never,
 }
 
-impl OneBody {
-    /// As written in tables.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Usual => "usual",
-            Self::Possible => "possible",
-            Self::Never => "never",
-        }
-    }
-}
-
 impl SingleBodies {
     /// The verdict; `None` if no body has a value.
     pub fn verdict(&self) -> Option<OneBody> {

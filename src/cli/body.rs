@@ -27,9 +27,9 @@ enum Action {
 
 /// Reads the description of a robot, MJCF (MuJoCo) or URDF (ROS), and writes it as a body.
 ///
-/// A part is a box, sphere, cylinder or capsule; the tree of parts is that of bodies or links. Hinges, ball joints and fixed
-/// joints are read, in the rest pose. Limits, friction and damping of joints, motors, contacts and inertias are left out;
-/// masses become densities. docs/import.md says more.
+/// A part is a box, sphere, cylinder or capsule; the tree of parts is that of the bodies or links. Hinges, ball joints and
+/// fixed joints are imported, in the rest pose. Limits, friction and damping of joints, motors, contacts and inertias are
+/// ignored; masses become densities. See docs/reference.md.
 #[derive(Args)]
 struct Import {
     /// Description of a robot, as MJCF or URDF
@@ -37,7 +37,7 @@ struct Import {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..), conflicts_with = "per_area",
           help = format!("Sensors on each part [default: {SENSORS}]"))]
     sensors_per_part: Option<u64>,
-    /// Sensors for a square metre of each part
+    /// Sensors per square metre of each part
     #[arg(long, value_name = "D")]
     per_area: Option<f64>,
     /// File for the body (.toml)
@@ -65,7 +65,7 @@ impl Import {
         };
         let same =
             |a: &Path, b: &Path| matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b);
-        ensure!(!same(robot, out), "{}: is the file that is read; give another --out", out.display());
+        ensure!(!same(robot, out), "{}: is the input file; give another --out", out.display());
         let Imported { file, notes } = import(robot, skin)?;
         let name = robot.file_name().unwrap_or_default();
         write_body(out, &format!("Imported from {name:?}."), &file)?;

@@ -25,15 +25,16 @@ use crate::stages::schema::Draw;
 use crate::stages::tree::Truth;
 use crate::stages::usable::{Fault, Usable, usable};
 
-/// Parts and tree of any body, from touch alone: for one's own robot (not in the paper).
+/// Estimates parts and tree of any body from touch alone, such as your own robot (not in the paper).
 ///
 /// Reads pressures (T x M, any numbers) and writes into DIR: parts.csv (sensor,part,unexplained,next_part,next_unexplained),
-/// tree.csv (child,parent,confidence), edges.csv (part,other,agreement,confidence,in_tree), dropped.csv (sensor,fault: those
-/// that are dead, constant or no number), summary.json and report.html, which shows parts, tree and touch. A part is rigid:
-/// sensors are on one part if one motion explains what all of them feel. unexplained is the share of a sensor's squares that
-/// the motion of its part leaves, next_unexplained what the next best part leaves. Parts are joined as by `tree`; confidence is
-/// that of an edge if the parts are right. Unless --settings says otherwise, pressures have eight levels, of each sensor's own
-/// (reproduce/estimate.toml).
+/// tree.csv (child,parent,confidence), edges.csv (part,other,agreement,confidence,in_tree), dropped.csv (sensor,fault: sensors
+/// that are dead, constant or not a number), summary.json and report.html, which shows parts, tree and touch.
+///
+/// A part is a rigid body: one rigid motion explains what all its sensors feel. Each sensor is assigned to the part with the
+/// smallest residual: unexplained is the share of residual variance of the sensor, next_unexplained that for the next best
+/// part. Parts are joined as by `tree`: confidence is the bootstrap support of an edge, given the parts. Unless --settings says
+/// otherwise, pressures are quantised into eight levels for each sensor (reproduce/estimate.toml).
 #[derive(Args)]
 pub struct Estimate {
     /// Pressures: a .npy or .csv file with a row for each sample and a column for each sensor
@@ -42,7 +43,7 @@ pub struct Estimate {
     common: SettingsAndSeed,
     #[command(flatten)]
     truth: TruthFiles,
-    /// Time between two samples, s, by which the report counts; samples if not given
+    /// Time between two samples, s; without it, the report counts samples
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     interval: Option<f64>,
     /// Folder to write to
@@ -94,8 +95,8 @@ impl Estimate {
         let (tactile, noisy) = without_noise(input, tactile);
         ensure!(
             sensors.len() >= MIN_SENSORS,
-            "{}: {} of {count} sensors feel anything that can be used, but parts can be told apart from {MIN_SENSORS} on; see `bodyschema tree` \
-             for parts that are known",
+            "{}: {} of {count} sensors feel anything usable, but estimating parts needs at least {MIN_SENSORS}; for known parts, use \
+             `bodyschema tree`",
             in_file(),
             sensors.len()
         );
@@ -139,9 +140,9 @@ impl Estimate {
         if summary.parts == 1 {
             let left = mean(&found.parts.left).value.unwrap_or(0.0);
             say(format!(
-                "no two parts can be told apart: one motion leaves {:.1} % of what the sensors feel unexplained{}",
+                "no two parts can be distinguished: the residual variance of a single rigid motion is {:.1} %{}",
                 100.0 * left,
-                if left < 0.05 { ", so that nothing moves against anything else" } else { "" }
+                if left < 0.05 { "; no joint seems to move" } else { "" }
             ))?;
         }
         tree::print(&found.tree, &found.parts.labels)?;

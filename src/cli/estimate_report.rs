@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use super::tree::in_words;
 use crate::analysis::estimate::Estimate;
 use crate::analysis::statistics::quantile;
 use crate::report::estimated::{Estimated, PartLine};
@@ -68,7 +69,7 @@ impl Shown<'_> {
         let tree = &found.tree;
         let sure = tree.tree.iter().filter(|edge| tree.confidence(edge) >= 0.95).count();
         let mut answers = vec![format!(
-            "{} parts of {} sensors; {sure} of {} joints with a confidence of at least 95 %",
+            "{} parts of {} sensors; {sure} of {} joints have a bootstrap support of at least 95 % (given the parts)",
             tree.parts.len(),
             read.sensors.len(),
             tree.tree.len()
@@ -77,8 +78,7 @@ impl Shown<'_> {
             let own = read.sensors.iter().map(|&sensor| truth.labels[sensor]).collect();
             let truth = Truth { labels: own, tree: truth.tree.clone() };
             let score = score(&Draw::of(found.parts.labels.clone(), tree.tree.clone()), &truth, 1.0);
-            let right = if score.tree_correct { "right" } else { "wrong" };
-            answers.push(format!("Against the truth: adjusted Rand index {:.3}, tree {right}", score.ari));
+            answers.push(format!("Against the truth: {}", in_words(&score)));
         }
         answers
     }
@@ -93,7 +93,7 @@ impl Shown<'_> {
             ("samples", read.tactile.samples.to_string()),
             ("samples left out", read.lost_samples.to_string()),
             ("sensors left out", dropped),
-            ("sensors with noise, which are smoothed", read.noisy.to_string()),
+            ("noisy sensors, which are smoothed", read.noisy.to_string()),
             ("seed", self.seed.to_string()),
             ("revision", env!("BODYSCHEMA_REVISION").to_owned()),
         ]

@@ -19,7 +19,7 @@ use crate::stages::tree::Truth;
 /// The number of threads.
 #[derive(Args)]
 pub struct Threads {
-    /// Number of threads; results do not depend on it [default: one for each core]
+    /// Number of threads; results do not depend on it [default: one per core]
     #[arg(long, value_name = "N")]
     jobs: Option<usize>,
 }
@@ -134,39 +134,45 @@ impl Choice for Scheme {
     const VALUES: &'static [(Self, &'static str)] = &[
         (
             Self::PerSensor,
-            "Level 0 is no pressure; the others share each sensor's positive pressures equally",
+            "Equal-frequency levels of each sensor's positive pressures; level 0 is no pressure",
         ),
-        (Self::Pooled, "As per-sensor, but with one set of thresholds for all sensors"),
+        (Self::Pooled, "As per-sensor, but with the same thresholds for all sensors"),
         (Self::EqualWidth, "Levels of equal width between the smallest and the largest pressure"),
     ];
 }
 
 impl Choice for MapMethod {
     const VALUES: &'static [(Self, &'static str)] = &[
-        (Self::Classical, "Classical scaling (Torgerson): the largest eigenvalues of the inner products"),
+        (Self::Classical, "Classical scaling (Torgerson), from the eigenvectors of the inner products"),
         (Self::Smacof, "Metric scaling by majorisation (SMACOF), starting from the classical map"),
         (
             Self::SmacofRandom,
             "Metric scaling by majorisation (SMACOF), the best of several random starts, as in scikit-learn 0.19",
         ),
-        (Self::Nonmetric, "Nonmetric scaling (Kruskal): only the order of the distances counts"),
+        (Self::Nonmetric, "Nonmetric scaling (Kruskal), from the rank order of the distances"),
     ];
 }
 
 impl Choice for MapOf {
     const VALUES: &'static [(Self, &'static str)] = &[
         (Self::Distances, "The distances themselves"),
-        (Self::Rows, "Euclidean distances between the rows of their matrix"),
+        (Self::Rows, "Euclidean distances between the rows of the distance matrix"),
     ];
 }
 
 impl Choice for Sampler {
     const VALUES: &'static [(Self, &'static str)] = &[
-        (Self::Equations, "As the paper's equations say"),
-        (Self::AuthorsCode, "As the first author's public code computes; see [schema.authors] of paper.toml"),
+        (
+            Self::Equations,
+            "Gibbs sampler of the paper's equations (Algorithm 1); for equation 22, see --edge-weight",
+        ),
+        (
+            Self::AuthorsCode,
+            "Gibbs sampler of the first author's public code; [schema.authors] of paper.toml lists its departures",
+        ),
         (
             Self::SplitMerge,
-            "By split and merge moves, with the settings of split-merge.toml; gives a posterior",
+            "Split-merge sampler (not in the paper), with the settings of split-merge.toml; also writes a posterior summary",
         ),
     ];
 }
@@ -180,10 +186,13 @@ impl Choice for Model {
 
 impl Choice for EdgeWeight {
     const VALUES: &'static [(Self, &'static str)] = &[
-        (Self::Literal, "Each child keeps its joint, whichever parent it is weighed with"),
+        (
+            Self::Literal,
+            "Equation 22 to the letter: each child keeps its joint, whatever parent is considered",
+        ),
         (
             Self::Pairwise,
-            "A joint is drawn for each pair of active components, and gives the weight of that pair",
+            "A joint is sampled for each pair of active components, as in the first author's code; deviates from equation 22",
         ),
         (Self::Collapsed, "The joint is integrated out"),
     ];
@@ -191,20 +200,20 @@ impl Choice for EdgeWeight {
 
 impl Choice for Start {
     const VALUES: &'static [(Self, &'static str)] = &[
-        (Self::Uniform, "Each sensor in a component drawn uniformly"),
-        (Self::KMeans, "Components are the clusters of k-means from one random start"),
+        (Self::Uniform, "Each sensor in a component drawn uniformly at random"),
+        (Self::KMeans, "The clusters of k-means from one random start"),
         (Self::Single, "All sensors in one component"),
         (
             Self::StickBreaking,
-            "Weights by stick-breaking, labels from them alone, means by k-means, identity covariances",
+            "Weights by stick-breaking, labels drawn from them, means by k-means, identity covariances",
         ),
-        (Self::Apart, "One chain after the other: single, k-means, uniform"),
+        (Self::Apart, "Overdispersed starts: one chain after the other single, k-means, uniform"),
     ];
 }
 
 impl Choice for Keep {
     const VALUES: &'static [(Self, &'static str)] =
-        &[(Self::Last, "The last draw of each chain"), (Self::All, "Every draw after burn-in")];
+        &[(Self::Last, "The last sample of each chain"), (Self::All, "Every sample after burn-in")];
 }
 
 impl Choice for Experiment {

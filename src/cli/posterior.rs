@@ -81,17 +81,21 @@ pub fn print(posterior: &Posterior, truth: Option<&Truth>, eligible_ari: f64) ->
         let own = consensus.labels.iter().zip(&consensus.certainty).filter(|(label, _)| **label == part);
         own.map(|(_, certainty)| certainty).sum::<f64>() / sizes[&part] as f64
     };
-    let name =
-        |part: usize| format!("part {part} ({} sensors, {} sure)", sizes[&part], percent(certainty(part)));
+    let name = |part: usize| {
+        format!("part {part} ({} sensors, mean probability {})", sizes[&part], percent(certainty(part)))
+    };
     let edges = posterior.tree.as_ref().map_or(Vec::new(), |tree| {
         let own = tree.edges.iter().filter(|(a, b, _)| tree.tree.contains(&(*a, *b)));
         own.map(|(a, b, probability)| (*a, *b, percent(*probability))).collect()
     });
+    if !edges.is_empty() {
+        say("tree, with the posterior probability of each edge (given the parts):")?;
+    }
     for line in text_tree(sizes.len(), &edges, &name) {
         say(line)?;
     }
     if let Some(tree) = &posterior.tree {
-        say(format!("probability of this tree, given these parts: {}", percent(tree.probability)))?;
+        say(format!("posterior probability of this tree, given these parts: {}", percent(tree.probability)))?;
     }
     if let Some(truth) = truth {
         print_score(&posterior.draw(), truth, eligible_ari)?;

@@ -13,8 +13,8 @@ use super::stages::{Distance, Infer, Map, Simulate};
 use super::tree::Tree;
 use super::view::View;
 
-/// Finds out from touch alone how many parts a body has, which sensor sits on which part, and how the parts are
-/// joined: a replication of Mimura, Hagiwara, Taniguchi and Inamura (2017).
+/// Estimates from touch alone how many parts a body has, which part carries each sensor, and how the parts are joined: a
+/// replication of Mimura, Hagiwara, Taniguchi and Inamura (2017).
 #[derive(Parser)]
 #[command(name = "bodyschema", version, arg_required_else_help = true)]
 struct Arguments {
@@ -65,8 +65,8 @@ impl Command {
     }
 }
 
-/// Runs the program. Exit status, as `diff` has it: 0 done and every claim reproduced, 1 some claim not, 2 an error,
-/// 130 interrupted.
+/// Runs the program. Exit status, as `diff` has it: 0 done (of an experiment: the headline is reproduced), 1 it is not, or
+/// results differ, 2 an error, 130 interrupted.
 pub fn main() -> ExitCode {
     // Every file appears whole or not at all, so nothing needs to be put in order before leaving.
     let handler = ctrlc::set_handler(|| {

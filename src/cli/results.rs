@@ -8,17 +8,16 @@ use clap::Args;
 
 use super::output::say;
 use crate::experiments::verify::{Finding, Outcome, against_manifest, against_reference};
-use crate::experiments::{bodies, compare, multiverse, sensitivity};
+use crate::experiments::{bodies, compare, multiverse, reproduce, sensitivity};
 use crate::files::manifest::Manifest;
 use crate::report::{page, plot};
 
-/// Renders the pictures of an experiment or study again, each from its table, and writes its page again.
+/// Renders the figures of an experiment or study again from their tables, and writes its report again.
 ///
-/// Reads DIR/figures/*.csv and writes an .svg beside each; then, where DIR holds a finished experiment, report.html from
-/// its claims.csv and manifest.json. Where DIR holds a sensitivity study: its pictures and sensitivity.md, from
-/// sensitivity.csv and design.toml. Where it holds a comparison: its pictures and comparison.md. Where it holds a
-/// multiverse: its tables, pictures and multiverse.md, from the specifications. Where it holds a study of bodies: bodies.md and its
-/// picture.
+/// Reads DIR/figures/*.csv and writes an .svg beside each. If DIR holds a finished experiment, judges its claims again from its
+/// samples.csv, with the accepted ranges of this program, and writes claims.csv, claims.md and report.html. If DIR holds a sensitivity study: its figures and sensitivity.md, from sensitivity.csv and
+/// design.toml. If it holds a comparison: its figures and comparison.md. If it holds a multiverse: its tables, figures and
+/// multiverse.md, from the specifications. If it holds a study of bodies: bodies.md and its figure.
 #[derive(Args)]
 pub struct Plot {
     /// Folder of an experiment or study
@@ -32,22 +31,22 @@ impl Plot {
         let folder = &self.folder;
         if sensitivity::is_study(folder) {
             let pictures = sensitivity::redraw(folder)?;
-            say(format!("{} pictures and sensitivity.md in {}", pictures.len(), folder.display()))?;
+            say(format!("{} figures and sensitivity.md in {}", pictures.len(), folder.display()))?;
             return Ok(ExitCode::SUCCESS);
         }
         if compare::is_comparison(folder) {
             let pictures = compare::redraw(folder)?;
-            say(format!("{} pictures and comparison.md in {}", pictures.len(), folder.display()))?;
+            say(format!("{} figures and comparison.md in {}", pictures.len(), folder.display()))?;
             return Ok(ExitCode::SUCCESS);
         }
         if multiverse::is_multiverse(folder) {
             multiverse::redraw(folder)?;
-            say(format!("multiverse.md, its tables and pictures in {}", folder.display()))?;
+            say(format!("multiverse.md, its tables and figures in {}", folder.display()))?;
             return Ok(ExitCode::SUCCESS);
         }
         if bodies::is_study(folder) {
             bodies::redraw(folder)?;
-            say(format!("bodies.md and its picture in {}", folder.display()))?;
+            say(format!("bodies.md and its figure in {}", folder.display()))?;
             return Ok(ExitCode::SUCCESS);
         }
         let figures = folder.join("figures");
@@ -57,8 +56,9 @@ impl Plot {
             "{}: has no table of a figure (fig04-agent.csv to fig11b-tree.csv)",
             figures.display()
         );
-        say(format!("{} pictures in {}", pictures.len(), figures.display()))?;
+        say(format!("{} figures in {}", pictures.len(), figures.display()))?;
         if Manifest::is_in(folder) {
+            reproduce::rejudge(folder)?;
             page::write(folder)?;
             say(format!("report in {}", folder.join("report.html").display()))?;
         }
@@ -71,8 +71,8 @@ impl Plot {
 ///
 /// With --against, compares every .csv and .npy file of REFERENCE with that of DIR. Two files agree if they have the same
 /// bytes; or if all numbers differ by at most 1e-6 times the larger one or 1; or, for a samples.csv with scores, if the
-/// rates (eligible draws, right trees) are within 4 standard errors in each condition. Lists the files that are not the
-/// same.
+/// rates (eligible samples, correct trees) are within 4 standard errors in each condition. Lists the files that are not
+/// the same.
 #[derive(Args)]
 pub struct Verify {
     /// Folder of results

@@ -29,17 +29,17 @@ use crate::stages::schema::{Draw, EdgeWeight, Keep, Model, Sampler, Start, best,
 use crate::stages::sense::sense;
 use crate::stages::simulate::simulate;
 
-/// Stages 1 and 2: moves a body at random in a fluid and records the pressure on its sensors.
+/// Stages 1 and 2: simulates a body that moves at random in a fluid, and records the pressures on its sensors.
 ///
 /// Writes into DIR: tactile.npy (float32, T x M, Pa), labels.csv (sensor,part), tree.csv (child,parent) and
 /// joint-angles.csv (time_s, then the angles of each joint in rad; T + 1 rows); for `view` also solids.csv, sensors.csv and
-/// poses.npy (float32, T + 1 x 7 for each solid); with --body also names.csv (part,name). T is the number of samples, M of
-/// sensors.
+/// poses.npy (float32, T + 1 x 7 for each solid); with --body also names.csv (part,name). T is the number of
+/// samples in time, M the number of sensors.
 #[derive(Args)]
 pub struct Simulate {
     #[command(flatten)]
     common: SettingsAndSeed,
-    /// Body to simulate, in place of that of the settings: a .toml file as in the folder bodies, which has some
+    /// Body to simulate, instead of the one in the settings: a .toml file, such as those in the folder bodies
     #[arg(long, value_name = "FILE")]
     body: Option<PathBuf>,
     /// Folder to write to
@@ -90,7 +90,7 @@ impl Simulate {
     }
 }
 
-/// Stages 3 and 4: turns pressures into symbols, and these into the information metric.
+/// Stages 3 and 4: quantises pressures into symbols, and computes the information metric between sensors.
 ///
 /// Reads pressures (float32, float64 or integers, T x M, Pa, not negative) and writes the distances
 /// H(X|Y) + H(Y|X) between all pairs of sensors (float64, M x M, bits).
@@ -99,10 +99,10 @@ pub struct Distance {
     /// Pressures, or symbols with --symbols: a .npy file with a row for each sample and a column for each sensor
     tactile: PathBuf,
     #[arg(long, value_parser = choice::<Scheme>(),
-          help = with_default("How pressures become levels", paper().quantise.scheme))]
+          help = with_default("Quantisation of pressures into levels", paper().quantise.scheme))]
     scheme: Option<Scheme>,
     #[arg(long, value_name = "N", conflicts_with = "symbols",
-          help = with_default("Number of levels, 2 to 256, the level for no pressure included", paper().quantise.levels))]
+          help = with_default("Number of levels, 2 to 256, including level 0 for no pressure", paper().quantise.levels))]
     levels: Option<usize>,
     /// The file holds symbols, not pressures: whole numbers from 0 to 255
     #[arg(long, conflicts_with = "scheme")]
@@ -149,7 +149,7 @@ impl Distance {
     }
 }
 
-/// Stage 5: places the sensors in D dimensions by multidimensional scaling.
+/// Stage 5: embeds the sensors in D dimensions by multidimensional scaling.
 ///
 /// Reads distances (M x M) and writes coordinates (float64, M x D, in the unit of the distances; columns of a classical
 /// map by descending eigenvalue). For smacof and nonmetric, which start from the classical map, and for smacof-random,
@@ -164,9 +164,9 @@ pub struct Map {
     #[arg(long, value_parser = choice::<MapMethod>(),
           help = with_default("Variant of multidimensional scaling", paper().map.method))]
     method: Option<MapMethod>,
-    #[arg(long, value_parser = choice::<MapOf>(), help = with_default("What is scaled", paper().map.of))]
+    #[arg(long, value_parser = choice::<MapOf>(), help = with_default("Distances that are scaled", paper().map.of))]
     of: Option<MapOf>,
-    #[arg(long, value_name = "N", help = with_default("Random maps that smacof-random starts from", paper().map.starts))]
+    #[arg(long, value_name = "N", help = with_default("Number of random starts of smacof-random", paper().map.starts))]
     starts: Option<usize>,
     #[command(flatten)]
     common: SettingsAndSeed,
@@ -196,7 +196,7 @@ impl Map {
         npy::write_body_map(out, &map)?;
         let fit = match improvements.first() {
             None => format!(
-                "its eigenvalues make up {:.2} % of the sum of squares of all",
+                "its eigenvalues make up {:.2} % of the sum of all squared eigenvalues",
                 100.0 * scaling.agreement(dims)
             ),
             Some(Improvement { start, stress, steps, .. }) => {
@@ -204,7 +204,9 @@ impl Map {
                     MapMethod::SmacofRandom => format!("the best of {} random maps", settings.map.starts),
                     _ => "the classical map".to_owned(),
                 };
-                format!("its stress-1 is {stress:.4} after {steps} steps from {start:.4} of {from}")
+                format!(
+                    "its stress-1 is {stress:.4} after {steps} iterations ({start:.4} for the start, {from})"
+                )
             }
         };
         say(format!(
@@ -216,25 +218,25 @@ impl Map {
     }
 }
 
-/// Stages 6 and 7: draws body schemas and, if the truth is given, evaluates them.
+/// Stages 6 and 7: samples body schemas from the posterior and, if the truth is given, evaluates them.
 ///
-/// Reads coordinates (M x D) and writes into DIR: assignments.npy (int32, draws x M, component of each
-/// sensor), samples.csv (a row for each draw: chain,parts,log_posterior, and, if the truth is given,
+/// Reads coordinates (M x D) and writes into DIR: assignments.npy (int32, posterior samples x M, component of each sensor),
+/// samples.csv (a row for each posterior sample: chain,parts,log_posterior, and, if the truth is given,
 /// ari,eligible,tree_correct) and trees.csv (chain,child,parent and, for dpgmm-lj, the position of the joint
 /// on the body map, x1 ... xD). With --keep all, a column `sweep` follows the chain.
 ///
-/// With --sampler split-merge, components have the numbers of the parts of the consensus of all draws that they match, and
-/// there are also posterior.csv (parts,probability), parts.csv (sensor,part,probability: the
-/// consensus), edges.csv (part,other,probability,in_tree: which parts are joined) and diagnostics.csv
-/// (quantity,r_hat,ess: whether the chains have mixed).
+/// With --sampler split-merge, components are numbered like the parts of the consensus of all posterior samples that they
+/// match, and there are also posterior.csv (parts,probability), parts.csv (sensor,part,probability: the consensus), edges.csv
+/// (part,other,probability,in_tree: which parts are joined) and diagnostics.csv (quantity,r_hat,ess: convergence of the
+/// chains).
 #[derive(Args)]
 pub struct Infer {
     /// Body map: a .npy file, M x D
     body_map: PathBuf,
-    /// The mixture
+    /// Mixture model
     #[arg(long, value_parser = choice::<Model>(), default_value = "dpgmm-lj")]
     model: Model,
-    #[arg(long, value_parser = choice::<Sampler>(), help = with_default("How to draw, and which reading of the paper that is", paper().schema.sampler))]
+    #[arg(long, value_parser = choice::<Sampler>(), help = with_default("Sampler, and thereby the interpretation of the paper", paper().schema.sampler))]
     sampler: Option<Sampler>,
     #[arg(long, value_name = "K", help = with_default("Number of components of the weak-limit approximation", paper().schema.components))]
     components: Option<usize>,
@@ -246,12 +248,12 @@ pub struct Infer {
           help = with_default("Edge weight of the minimum spanning tree", paper().schema.edge_weight))]
     edge_weight: Option<EdgeWeight>,
     #[arg(long, value_parser = choice::<Start>(),
-          help = with_default("Components of the sensors when a chain starts", paper().schema.start))]
+          help = with_default("Initial components of the sensors of a chain", paper().schema.start))]
     start: Option<Start>,
     #[arg(long, value_parser = choice::<Keep>(),
-          help = with_default("Draws of each chain that are kept", paper().schema.keep))]
+          help = with_default("Samples of each chain that are kept", paper().schema.keep))]
     keep: Option<Keep>,
-    #[arg(long, value_name = "N", help = with_default("Sweeps of each chain that are dropped with --keep all", paper().schema.burn_in))]
+    #[arg(long, value_name = "N", help = with_default("Sweeps of each chain that are discarded as burn-in with --keep all", paper().schema.burn_in))]
     burn_in: Option<usize>,
     #[command(flatten)]
     common: SettingsAndSeed,
@@ -318,7 +320,7 @@ impl Infer {
 
 fn print_run(model: Model, map: &BodyMap, draws: usize, settings: &Settings, out: &Path) -> Result<()> {
     say(format!(
-        "{} of {} sensors in {} dimensions: {draws} draws of {} chains of {} sweeps, seed {}, in {}",
+        "{} of {} sensors in {} dimensions: {draws} posterior samples from {} chains of {} sweeps, seed {}, in {}",
         model.name(),
         map.points(),
         map.dims,
@@ -331,22 +333,29 @@ fn print_run(model: Model, map: &BodyMap, draws: usize, settings: &Settings, out
 
 fn print_draws(draws: &[Draw], scores: Option<&[Score]>) -> Result<()> {
     let counts: Vec<f64> = draws.iter().map(|draw| parts(&draw.labels) as f64).collect();
-    say(format!("parts: {}", line(&mean(&counts), "mean")))?;
+    say(format!("number of parts: {}", line(&mean(&counts), "mean")))?;
     let best = best(draws);
-    say(format!("draw of highest log posterior: chain {}, {} parts", best.chain, parts(&best.labels)))?;
+    say(format!(
+        "most probable sample (highest log posterior): chain {}, {} parts",
+        best.chain,
+        parts(&best.labels)
+    ))?;
     let Some(scores) = scores else { return Ok(()) };
     let aris: Vec<f64> = scores.iter().map(|score| score.ari).collect();
     say(format!("adjusted Rand index: {}", line(&mean(&aris), "mean")))?;
     let eligible = scores.iter().filter(|score| score.eligible);
     let right = eligible.clone().filter(|score| score.tree_correct).count();
     let rate = rate(right, eligible.count());
-    say(format!("tree right among eligible draws: {}", line(&rate, &format!("{right} of {}:", rate.n))))
+    say(format!(
+        "tree accuracy (eligible samples that recover the true tree): {}",
+        line(&rate, &format!("{right} of {}:", rate.n))
+    ))
 }
 
 /// An estimate with its interval.
 fn line(estimate: &Estimate, what: &str) -> String {
     match (estimate.value, estimate.interval) {
-        (None, _) => format!("{what} no rate"),
+        (None, _) => format!("{what} no value"),
         (Some(value), None) => format!("{what} {value:.3} (n = {})", estimate.n),
         (Some(value), Some((low, high))) => {
             format!("{what} {value:.3} (95 % interval {low:.3} to {high:.3}, n = {})", estimate.n)

@@ -16,19 +16,20 @@ use crate::numerics::partition::sizes;
 use crate::numerics::rng::stream;
 use crate::report::text_tree::text_tree;
 use crate::stages::co_motion::{CoMotion, MAX_COMPONENTS, Pair, co_motion};
-use crate::stages::evaluate::score;
+use crate::stages::evaluate::{Score, score};
 use crate::stages::noise::above_noise;
 use crate::stages::schema::Draw;
 use crate::stages::sense::Tactile;
 use crate::stages::tree::Truth;
 use crate::stages::usable::{Usable, usable};
 
-/// How given parts are joined, from what they feel of their joints (not in the paper).
+/// Estimates how given parts are joined, from the speeds of their joints (not in the paper).
 ///
 /// Reads pressures (T x M, any numbers) and the part of each sensor, and writes into DIR: tree.csv
-/// (child,parent,confidence) and edges.csv (part,other,agreement,confidence,in_tree: all pairs of parts). A joint has
-/// one speed, which both of its parts know: agreement, 0 to 1, says how well two parts know the same speed. Confidence is
-/// the share of trees over resampled times that have the edge.
+/// (child,parent,confidence) and edges.csv (part,other,agreement,confidence,in_tree: all pairs of parts). Both parts of a
+/// joint feel its speed: agreement, 0 to 1, is the canonical correlation of that speed between two parts, and the tree is
+/// the spanning tree of greatest agreement. Confidence is the bootstrap support of an edge, given the parts: the share of
+/// trees over resampled blocks of time that have it.
 #[derive(Args)]
 pub struct Tree {
     /// Pressures: a .npy or .csv file with a row for each sample and a column for each sensor
@@ -37,7 +38,7 @@ pub struct Tree {
     /// left out
     #[arg(long, value_name = "FILE")]
     parts: PathBuf,
-    /// Numbers that a part feels of its motion, 1 to 6 (chosen by the data, for each part, if not given)
+    /// Rank of the motion subspace of each part, 1 to 6 [default: chosen for each part from the data]
     #[arg(long, value_name = "K", value_parser = clap::value_parser!(u64).range(1..=MAX_COMPONENTS as u64))]
     components: Option<u64>,
     #[arg(long, value_name = "S", help = with_default("Master seed of all random numbers", paper().experiment.seed))]
@@ -103,7 +104,7 @@ impl Tree {
 pub fn say_lost(input: &Path, lost_samples: usize) {
     if lost_samples > 0 {
         eprintln!(
-            "bodyschema: {}: {lost_samples} samples are left out, because most sensors have no number there",
+            "bodyschema: {}: {lost_samples} samples are left out, because most sensors have no value there",
             input.display()
         );
     }
@@ -114,7 +115,7 @@ pub fn without_noise(input: &Path, tactile: Tactile) -> (Tactile, usize) {
     let (tactile, noisy) = above_noise(tactile);
     if noisy > 0 {
         eprintln!(
-            "bodyschema: {}: {noisy} of {} sensors have noise; they are smoothed, and pressures within it count as no touch",
+            "bodyschema: {}: {noisy} of {} sensors are noisy; they are smoothed, and pressures within the noise count as no touch",
             input.display(),
             tactile.sensors()
         );
@@ -126,7 +127,7 @@ pub fn without_noise(input: &Path, tactile: Tactile) -> (Tactile, usize) {
 pub fn refuse_truth(out: &Path) -> Result<()> {
     ensure!(
         !out.join("labels.csv").is_file(),
-        "{}: holds true parts and their tree.csv (labels.csv), which would be written over; give another --out",
+        "{}: holds true parts (labels.csv) and their tree.csv, which would be overwritten; give another --out",
         out.display()
     );
     Ok(())
@@ -135,8 +136,13 @@ pub fn refuse_truth(out: &Path) -> Result<()> {
 /// Prints how parts and tree compare with the truth.
 pub fn print_score(draw: &Draw, truth: &Truth, eligible_ari: f64) -> Result<()> {
     let score = score(draw, truth, eligible_ari);
-    let right = if score.tree_correct { "right" } else { "wrong" };
-    say(format!("against the truth: adjusted Rand index {:.3}, tree {right}", score.ari))
+    say(format!("against the truth: {}", in_words(&score)))
+}
+
+/// A score, in words.
+pub fn in_words(score: &Score) -> String {
+    let recovered = if score.tree_correct { "recovered" } else { "not recovered" };
+    format!("adjusted Rand index {:.3}, true tree {recovered}", score.ari)
 }
 
 /// Writes tree.csv and edges.csv.
@@ -158,7 +164,7 @@ pub fn write(out: &Path, found: &CoMotion) -> Result<()> {
     Ok(write_rows_of(&out.join("edges.csv"), &columns, pairs)?)
 }
 
-/// Prints the tree, with the confidence of each edge.
+/// Prints the tree, with the bootstrap support of each edge.
 pub fn print(found: &CoMotion, labels: &[usize]) -> Result<()> {
     let sizes = sizes(labels);
     let place = |part: usize| found.parts.iter().position(|(label, _)| *label == part).unwrap_or_default();
@@ -167,7 +173,10 @@ pub fn print(found: &CoMotion, labels: &[usize]) -> Result<()> {
     let edges: Vec<_> = found.pairs.iter().filter(|pair| pair.in_tree).map(edge).collect();
     let name = |at: usize| {
         let (part, components) = found.parts[at];
-        format!("part {part} ({} sensors, {components} numbers of its motion)", sizes[&part])
+        format!("part {part} ({} sensors, motion of rank {components})", sizes[&part])
     };
+    if !edges.is_empty() {
+        say("tree, with the bootstrap support of each edge (given the parts):")?;
+    }
     text_tree(found.parts.len(), &edges, &name).into_iter().try_for_each(say)
 }

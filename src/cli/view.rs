@@ -12,11 +12,11 @@ use crate::files::write_text;
 use crate::report::viewer::folder::{Sources, read};
 use crate::report::viewer::page::page;
 
-/// Shows a body that moves, what its skin feels, its map and its tree, as one page for a browser (not in the paper).
+/// Writes an interactive page for a browser: a moving body, what its skin feels, its body map and its tree (not in the paper).
 ///
-/// DIR is a folder of `simulate` or `estimate`, or one with data of your own: tactile.npy (or .csv), and, if there are any,
-/// parts.csv (sensor,part) and tree.csv (child,parent,confidence). A body is drawn where DIR has solids.csv, sensors.csv and
-/// poses.npy, as `simulate` writes them. Without body-map.npy, a map of three dimensions is made as by `distance` and `map`.
+/// DIR is a folder of `simulate` or `estimate`, or one with data of your own: tactile.npy (or .csv), and, if available, parts.csv
+/// (sensor,part) and tree.csv (child,parent,confidence). The body is shown if DIR has solids.csv, sensors.csv and poses.npy, as
+/// `simulate` writes them. Without body-map.npy, a map of three dimensions is computed as by `distance` and `map`.
 #[derive(Args)]
 pub struct View {
     /// Folder of a simulation, an estimate, or data of your own
@@ -25,8 +25,8 @@ pub struct View {
     /// Pressures, if they are not in DIR: a .npy or .csv file with a row for each sample and a column for each sensor
     #[arg(long, value_name = "FILE")]
     tactile: Option<PathBuf>,
-    /// Folder of an estimate of this body, as `estimate` or `infer` wrote it: parts.csv and tree.csv, or draws, of which the one of
-    /// highest log posterior is shown
+    /// Folder of an estimate of this body, as `estimate` or `infer` wrote it: parts.csv and tree.csv, or posterior samples, of which
+    /// the most probable one is shown
     #[arg(long, value_name = "DIR")]
     estimate: Option<PathBuf>,
     #[command(flatten)]
@@ -49,7 +49,7 @@ impl View {
         let out = self.out.unwrap_or_else(|| self.folder.join("view.html"));
         let title = format!("Body schema of {}", self.folder.display());
         write_text(&out, &page(&title, &[scene.data()]))?;
-        say(format!("{} sensors at {} times, in {}", scene.sensors, scene.frames.count, out.display()))?;
+        say(format!("{} sensors in {} frames, in {}", scene.sensors, scene.frames.count, out.display()))?;
         Ok(ExitCode::SUCCESS)
     }
 }

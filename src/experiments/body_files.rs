@@ -68,7 +68,7 @@ impl BodyFiles<'_> {
         for (name, hash) in &finished.files {
             let path = folder.join(name);
             if sha256(&path).ok().as_ref() != Some(hash) {
-                eprintln!("bodyschema: {}: has changed or is missing; it is made again", path.display());
+                eprintln!("bodyschema: {}: has changed or is missing; it is computed again", path.display());
                 return None;
             }
         }

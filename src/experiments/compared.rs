@@ -32,7 +32,7 @@ impl Compared {
             return Ok(());
         };
         let (id, experiment) = (&unknown.id, unknown.experiment.name());
-        let rule = "is no claim of that experiment with an accepted range for values of its draws";
+        let rule = "is not a claim of that experiment with an accepted range for values of its samples";
         Err(format!("names `{id}` of {experiment}, which {rule}; see reproduce/published.toml"))
     }
 }

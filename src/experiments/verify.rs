@@ -299,13 +299,13 @@ fn compare_rates(
     difference: &str,
 ) -> Outcome {
     if !own.keys().eq(other.keys()) {
-        return Outcome::Differs(format!("{difference}; and their conditions are not the same"));
+        return Outcome::Differs(format!("{difference}; and their conditions differ"));
     }
     let mut largest: f64 = 0.0;
     for ((condition, own), other) in own.iter().zip(other.values()) {
         let pairs = [
             ("eligible", (own.eligible, own.draws), (other.eligible, other.draws)),
-            ("trees right", (own.correct, own.eligible), (other.correct, other.eligible)),
+            ("correct trees", (own.correct, own.eligible), (other.correct, other.eligible)),
         ];
         for (name, own, other) in pairs {
             let errors = standard_errors(own, other);

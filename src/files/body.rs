@@ -1,6 +1,6 @@
 //! Read and write the description of a body: a TOML file with a table for each part.
 //!
-//! All places and directions are in one frame, in the rest pose; `docs/body-files.md` explains every key.
+//! All places and directions are in one frame, in the rest pose; `docs/reference.md` explains every key.
 
 use std::path::Path;
 
@@ -224,7 +224,7 @@ impl BodyFile {
             agent.parts.push(part);
         }
         if agent.sites.is_empty() {
-            return Err("it has no sensors; say skin = { sensors = 40 }, for instance".to_owned());
+            return Err("it has no sensors; add for instance skin = { sensors = 40 }".to_owned());
         }
         Ok(NamedBody { agent, names: self.parts.iter().map(|part| part.name.clone()).collect() })
     }
@@ -237,7 +237,7 @@ impl BodyFile {
             SkinEntry { sensors: None, per_area: Some(density) } => {
                 if !(0.0..=1e9).contains(&density) {
                     return Err(format!(
-                        "skin.per_area is {density}, but must be 0 to 1e9 for a square metre"
+                        "skin.per_area is {density}, but must be 0 to 1e9 (per square metre)"
                     ));
                 }
                 (density * part.shape.area()).round() as usize
@@ -299,7 +299,7 @@ impl PartEntry {
             ("quaternion", self.quaternion.is_some(), is_box),
         ] {
             if given && !belongs {
-                return Err(format!("it has {key}, which a {word} has not"));
+                return Err(format!("it has {key}, which a {word} does not have"));
             }
         }
         let radius = || length("radius", needed("radius", self.radius, word)?);
@@ -344,7 +344,7 @@ impl PartEntry {
     fn joint(&self, at: usize, earlier: &[Self], part: &Part) -> Result<Option<Joint>, Wrong> {
         let Some(parent) = &self.parent else {
             if at > 0 {
-                return Err("it lacks parent: only the first part has none".to_owned());
+                return Err("it lacks parent; only the first part may lack it".to_owned());
             }
             if self.joint.is_some() || self.anchor.is_some() || self.axes.is_some() {
                 return Err("it has a joint but no parent".to_owned());
@@ -352,7 +352,7 @@ impl PartEntry {
             return Ok(None);
         };
         let Some(parent) = earlier.iter().position(|other| other.name == *parent) else {
-            return Err(format!("its parent `{parent}` is no earlier part"));
+            return Err(format!("its parent `{parent}` is not an earlier part"));
         };
         let Some(anchor) = self.anchor.or(self.from) else {
             return Err("it lacks anchor, the place of its joint".to_owned());
@@ -383,7 +383,7 @@ impl PartEntry {
             (Some(JointName::Hinge), _) => {
                 return Err("a hinge needs axes = [[x, y, z]], one axis".to_owned());
             }
-            (Some(_), _) => return Err("it has axes, which a ball or fixed joint has not".to_owned()),
+            (Some(_), _) => return Err("it has axes, which a ball or fixed joint does not have".to_owned()),
         };
         Ok(Some(Joint { parent, child: at, anchor: place("anchor", anchor)?, freedom }))
     }

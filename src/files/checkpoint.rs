@@ -53,12 +53,12 @@ impl Checkpoints {
             Err(_) => return self.damaged(&path, "is not a checkpoint"),
         };
         if file.sha256 != sha256_of_text(file.content.get()) {
-            return self.damaged(&path, "its content does not have the stated hash");
+            return self.damaged(&path, "its content does not match its hash");
         }
         if file.key != self.key {
             if !self.told[1].swap(true, Ordering::Relaxed) {
                 eprintln!(
-                    "bodyschema: {}: checkpoints of other settings or of another program are not used",
+                    "bodyschema: {}: checkpoints of other settings or of another version of the program are ignored",
                     self.folder.display()
                 );
             }
@@ -74,7 +74,7 @@ impl Checkpoints {
     }
 
     fn damaged<T>(&self, path: &Path, what: &str) -> Option<T> {
-        eprintln!("bodyschema: {}: {what}; this part is done again", path.display());
+        eprintln!("bodyschema: {}: {what}; this part is run again", path.display());
         None
     }
 

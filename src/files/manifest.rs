@@ -27,7 +27,7 @@ pub struct Manifest {
     /// Conditions and amounts of an experiment, in words.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub summary: Option<String>,
-    /// The comparison of published and reproduced headline, in words.
+    /// The headline in a sentence: what came out, and what the paper reports.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub headline: Vec<String>,
     /// Whether it was a small run that only shows the program working.

@@ -105,7 +105,7 @@ impl MovedBody {
             let number = |value: Option<f64>| value.filter(|value| value.is_finite() && *value >= 0.0);
             shape_of(&row, number)
                 .filter(|_| row.solid == at)
-                .ok_or_else(|| FileError::new(&solids, format!("row {} is no solid number {at}", at + 1)))
+                .ok_or_else(|| FileError::new(&solids, format!("row {} is not solid number {at}", at + 1)))
         };
         let shapes: Vec<Shape> =
             read_rows(&solids)?.into_iter().enumerate().map(shape).collect::<Result<_, _>>()?;
@@ -113,7 +113,7 @@ impl MovedBody {
             let site = site_of(&row);
             let finite = site.position.iter().chain(&site.normal).all(|number| number.is_finite());
             if row.sensor != at || row.solid >= shapes.len() || !finite {
-                return Err(FileError::new(&sensors, format!("row {} is no sensor number {at}", at + 1)));
+                return Err(FileError::new(&sensors, format!("row {} is not sensor number {at}", at + 1)));
             }
             Ok(site)
         };
@@ -238,7 +238,7 @@ mod tests {
             "solid,part,shape,radius_m,length_m,x_m,y_m,z_m\n0,0,sphere,0.1,,,,\n",
         )
         .unwrap();
-        assert!(MovedBody::read(folder.path()).unwrap_err().to_string().contains("row 2 is no sensor"));
+        assert!(MovedBody::read(folder.path()).unwrap_err().to_string().contains("row 2 is not sensor"));
     }
 
     #[test]

@@ -85,7 +85,7 @@ pub(super) fn check_sensors(path: &Path, columns: usize, rows: impl Display) -> 
         return Ok(());
     }
     let message = format!(
-        "has {rows} rows and {columns} columns; a row is a time and a column a sensor, and {MAX_SENSORS} sensors are the \
+        "has {rows} rows and {columns} columns; each row is a sample in time, each column a sensor, and {MAX_SENSORS} sensors are the \
          maximum: is it transposed?"
     );
     Err(FileError::new(path, message))
@@ -117,7 +117,7 @@ pub fn read_distances(path: &Path) -> Result<Distances, FileError> {
     let sensors = matrix.rows;
     if matrix.columns != sensors {
         let message = format!(
-            "distances must be a square matrix, but the shape is {sensors} x {}; give what `bodyschema distance` writes",
+            "distances must be a square matrix, but the shape is {sensors} x {}; give the output of `bodyschema distance`",
             matrix.columns
         );
         return Err(FileError::new(path, message));
@@ -153,7 +153,11 @@ pub fn read_body_map(path: &Path) -> Result<BodyMap, FileError> {
 pub fn read_assignments(path: &Path) -> Result<(usize, usize, Vec<usize>), FileError> {
     let whole = |value: f64| value >= 0.0 && value <= f64::from(i32::MAX) && value.fract() == 0.0;
     let matrix = Matrix::read(path, Order::C, |value| {
-        if whole(value) { Ok(value as usize) } else { Err("a component must be a whole number from 0 on") }
+        if whole(value) {
+            Ok(value as usize)
+        } else {
+            Err("a component must be a whole number of at least 0")
+        }
     })?;
     Ok((matrix.rows, matrix.columns, matrix.values))
 }

@@ -46,7 +46,7 @@ fn described(manifest: &Manifest, begun: SystemTime, ended: SystemTime) -> Value
     let ids = |files: &[&HashedFile]| files.iter().map(|file| id(&file.file)).collect::<Vec<_>>();
     let objects = [&ids(&tasks)[..], &[id("#seed")]].concat();
     let parts = [&ids(&tasks)[..], &ids(&results), &[id(MANIFEST)]].concat();
-    let summary = manifest.summary.as_deref().unwrap_or("Tables, pictures and a page for reading.");
+    let summary = manifest.summary.as_deref().unwrap_or("Tables, figures and a report.");
     let mut graph = vec![
         json!({
             "@id": RO_CRATE,
@@ -60,8 +60,8 @@ fn described(manifest: &Manifest, begun: SystemTime, ended: SystemTime) -> Value
             "conformsTo": id(PROFILE),
             "name": format!("Results of {what} by {program}"),
             "description": format!(
-                "{summary} {MANIFEST} names libraries, machine and settings. The times are those of the process that \
-                 ended the work; it takes over what earlier ones finished."
+                "{summary} {MANIFEST} names libraries, machine and settings. The times are those of the last process: an \
+                 interrupted run continues from checkpoints of earlier processes."
             ),
             "datePublished": time(ended),
             "license": id("#licence"),

@@ -38,13 +38,15 @@ fn read_csv(path: &Path) -> Result<Tactile, FileError> {
         }
         if let Some(column) = cells.iter().position(Option::is_none) {
             let cell = record.get(column).unwrap_or_default();
-            return Err(wrong(format!("row {}, column {}: `{cell}` is no number", at + 1, column + 1)));
+            return Err(wrong(format!("row {}, column {}: `{cell}` is not a number", at + 1, column + 1)));
         }
         by_time.extend(cells.into_iter().flatten());
         samples += 1;
     }
     if samples == 0 {
-        return Err(wrong("has no row of numbers; a row is a time and a column a sensor".to_owned()));
+        return Err(wrong(
+            "has no row of numbers; each row must be a sample in time, and each column a sensor".to_owned(),
+        ));
     }
     let pressures =
         (0..sensors).flat_map(|sensor| by_time[sensor..].iter().step_by(sensors).copied()).collect();
@@ -84,7 +86,7 @@ mod tests {
     #[test]
     fn what_is_no_table_of_numbers_is_named() {
         for (text, expected) in [
-            ("1,2\n3,x\n", "row 2, column 2: `x` is no number"),
+            ("1,2\n3,x\n", "row 2, column 2: `x` is not a number"),
             ("1,2\n3\n", "record 1"),
             ("a,b\n", "no row of numbers"),
             ("", "no row of numbers"),

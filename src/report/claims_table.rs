@@ -3,13 +3,14 @@
 use serde::{Deserialize, Serialize};
 
 use super::figure_rows::Counting;
+use super::headline::Headline;
 use super::markdown;
 use super::numbers;
 use crate::analysis::cells::EstimateCells;
 use crate::analysis::claims::{Judged, Verdict};
 use crate::analysis::one_body::{OneBody, SingleBodies};
 use crate::analysis::published::{Claim, HEADLINE, Unit};
-use crate::analysis::statistics::{Estimate, rate_difference};
+use crate::analysis::statistics::Estimate;
 use crate::stages::schema::Sampler;
 
 /// A row of `claims.csv`. A claim that counts draws has two, one for each [`Counting`].
@@ -67,8 +68,11 @@ pub struct Row {
     pub one_body: Option<OneBody>,
 }
 
-/// Stands in place of a verdict in the rows of the best draw.
+/// Stands in place of a verdict in the rows of the most probable sample.
 const EXTENSION: &str = "extension";
+
+/// Stands in place of a verdict in a quick run.
+const ILLUSTRATION: &str = "illustration";
 
 impl Row {
     /// Names of the cells that people see.
@@ -79,9 +83,9 @@ impl Row {
         "reproduced",
         "95 % interval",
         "n",
-        "single simulations",
+        "range over simulations",
         "accepted",
-        "one body shows it",
+        "single simulations that show it",
         "where",
         "paper",
     ];
@@ -137,17 +141,24 @@ impl Row {
         }
     }
 
-    /// The share of single bodies that show the claim, in words.
-    fn bodies_in_words(&self) -> String {
-        let share = |value: Option<f64>| numbers::value(value, Some(Unit::Rate));
-        let (Some(verdict), Some(bodies)) = (self.one_body, self.bodies) else { return String::new() };
+    /// How many single simulations show the claim, such as "5 of 20"; empty where that was not asked for.
+    fn shown_by(&self) -> String {
+        let (Some(share), Some(simulations)) = (self.bodies_share, self.bodies) else { return String::new() };
+        format!("{} of {simulations}", count(share, simulations))
+    }
+
+    /// The same with its interval, and how many of them show all claims of the experiment.
+    fn shown_by_in_words(&self) -> String {
+        let (Some(together), Some(simulations)) = (self.bodies_together, self.bodies) else {
+            return String::new();
+        };
         let interval = numbers::range(self.bodies_low.zip(self.bodies_high), Some(Unit::Rate));
-        format!(
-            "{}: {} of {bodies} bodies ({interval}); with all others {}",
-            verdict.name(),
-            share(self.bodies_share),
-            share(self.bodies_together)
-        )
+        let all = match count(together, simulations) {
+            0 => "none shows".to_owned(),
+            1 => "1 shows".to_owned(),
+            several => format!("{several} show"),
+        };
+        format!("{} ({interval}); {all} all claims", self.shown_by())
     }
 
     /// The claim, with the reading that its draws follow where two readings have it.
@@ -178,9 +189,13 @@ impl Row {
         self.cells.low.zip(self.cells.high)
     }
 
-    /// Its verdict in a word, or that it is an extension.
+    /// Its verdict in a word, or why it has none.
     pub fn verdict_in_words(&self) -> &'static str {
-        self.verdict.map_or(EXTENSION, Verdict::name)
+        let without = match self.counting {
+            Counting::AllDraws => ILLUSTRATION,
+            Counting::BestDraw => EXTENSION,
+        };
+        self.verdict.map_or(without, Verdict::name)
     }
 
     /// The reproduced value in its unit.
@@ -192,7 +207,7 @@ impl Row {
     pub fn in_words(&self) -> [String; 11] {
         let claim = match self.counting {
             Counting::AllDraws => self.claim(),
-            Counting::BestDraw => format!("{}: draw of highest log posterior", self.claim()),
+            Counting::BestDraw => format!("{}: most probable sample", self.claim()),
         };
         let paper = match self.figure.as_str() {
             "" => self.place.clone(),
@@ -208,11 +223,16 @@ impl Row {
             self.unit.map_or(String::new(), |_| self.cells.n.to_string()),
             numbers::range(spread, self.unit),
             numbers::range(self.accepted(), self.unit),
-            self.bodies_in_words(),
+            self.shown_by_in_words(),
             self.found.clone(),
             paper,
         ]
     }
+}
+
+/// How many a share of so many is.
+fn count(share: f64, of: usize) -> usize {
+    (share * of as f64).round() as usize
 }
 
 /// The table of claims: a row for each claim, followed by one for the best draws if the claim counts draws.
@@ -226,26 +246,33 @@ pub fn rows(judged: &[Judged]) -> Vec<Row> {
     judged.iter().flat_map(both).collect()
 }
 
-/// The text of `claims.md`: `preamble`, the table, and the comparison of the first claim.
-pub fn markdown(preamble: &str, judged: &[Judged]) -> String {
-    let mut lines =
-        vec![format!("{preamble}\n"), markdown::row(Row::HEADER), markdown::rule(Row::HEADER.len())];
-    lines.extend(rows(judged).iter().map(|row| markdown::row(row.in_words())));
-    lines.extend(judged.iter().filter_map(comparison).map(|line| format!("\n{line}")));
+/// The rows of a quick run: an illustration, in which nothing is judged.
+pub fn illustrated(rows: Vec<Row>) -> Vec<Row> {
+    rows.into_iter().map(|row| Row { verdict: None, one_body: None, ..row }).collect()
+}
+
+/// The text of `claims.md`: the headline, `preamble`, and the table of all claims.
+pub fn markdown(preamble: &str, rows: &[Row]) -> String {
+    let headline = Headline::of(rows).map_or(String::new(), |headline| headline.in_markdown() + "\n\n");
+    let mut lines = vec![
+        format!("{headline}{preamble}\n"),
+        markdown::row(Row::HEADER),
+        markdown::rule(Row::HEADER.len()),
+    ];
+    lines.extend(rows.iter().map(|row| markdown::row(row.in_words())));
     lines.join("\n") + "\n"
 }
 
 /// The table for a terminal, a line for each row.
-pub fn terminal_table(judged: &[Judged]) -> String {
-    let header = ["verdict", "claim", "published", "reproduced", "95 % interval", "n", "one body shows it"]
-        .map(str::to_owned);
-    let cells = |row: Row| {
-        let name = row.short_name();
-        let one_body = row.one_body.map_or("", OneBody::name).to_owned();
+pub fn terminal_table(rows: &[Row]) -> String {
+    let header =
+        ["verdict", "claim", "published", "reproduced", "95 % interval", "n", "simulations that show it"]
+            .map(str::to_owned);
+    let cells = |row: &Row| {
         let [verdict, _, published, reproduced, interval, n, ..] = row.in_words();
-        [verdict, name, published, reproduced, interval, n, one_body]
+        [verdict, row.short_name(), published, reproduced, interval, n, row.shown_by()]
     };
-    let rows: Vec<_> = std::iter::once(header).chain(self::rows(judged).into_iter().map(cells)).collect();
+    let rows: Vec<_> = std::iter::once(header).chain(rows.iter().map(cells)).collect();
     let widths: Vec<usize> =
         (0..7).map(|column| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0)).collect();
     let line = |row: &[String; 7]| {
@@ -256,37 +283,5 @@ pub fn terminal_table(judged: &[Judged]) -> String {
     rows.iter().map(line).collect::<Vec<_>>().join("\n")
 }
 
-/// Published and reproduced rate side by side, with the difference, for a claim whose counts may be known.
-pub fn comparison(judged: &Judged) -> Option<String> {
-    let Judged { claim, reproduced, verdict, reading, .. } = judged;
-    let reading = reading.in_words();
-    let &(k, n) = claim.possible_counts.first()?;
-    let Some(value) = reproduced.value else {
-        return Some(format!(
-            "{}, {reading}: published {} | reproduced no rate, 0 of 0 eligible draws | {}",
-            claim.statement,
-            claim.wording,
-            verdict.name()
-        ));
-    };
-    let interval = reproduced.interval.unwrap_or((value, value));
-    let difference = |&(k, n): &(usize, usize)| {
-        let (low, high) = rate_difference(value, interval, (k, n));
-        format!("{:+.1} to {:+.1} if published {k}/{n}", 100.0 * low, 100.0 * high)
-    };
-    let differences: Vec<String> = claim.possible_counts.iter().map(difference).collect();
-    Some(format!(
-        "{}, {reading}: published {} | reproduced {} | n = {} | 95 % interval {} | difference {:+.1} points, 95 % interval {} | {}",
-        claim.statement,
-        claim.wording,
-        numbers::value(Some(value), Some(Unit::Rate)),
-        reproduced.n,
-        numbers::range(Some(interval), Some(Unit::Rate)),
-        100.0 * (value - k as f64 / n as f64),
-        differences.join(", "),
-        verdict.name()
-    ))
-}
-
 #[cfg(test)]
-mod tests;
+pub mod tests;

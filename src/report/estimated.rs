@@ -49,14 +49,14 @@ pub fn page(estimated: &Estimated) -> String {
             }
             body {
                 header {
-                    h1 { "Parts and tree from " (name) }
+                    h1 { "Estimated parts and tree from " (name) }
                     @for answer in answers { p.headline { (answer) } }
                 }
                 main {
                     (viewer::page::section(&[scene.data()]))
                     (part_table(parts))
                     (edge_table(scene))
-                    h2 { "How it was made" }
+                    h2 { "How this estimate was made" }
                     dl { @for (name, value) in facts { dt { (name) } dd { (value) } } }
                     p { "All numbers are in parts.csv, tree.csv, edges.csv and summary.json beside this page." }
                 }
@@ -69,17 +69,17 @@ pub fn page(estimated: &Estimated) -> String {
 fn part_table(parts: &[PartLine]) -> Markup {
     html! {
         h2 { "Parts" }
-        p { "A part is rigid: sensors are on one part if one motion explains what they feel. Unexplained is the share that it \
-             leaves, in the middle of the sensors of the part." }
+        p { "A part is a rigid body: one rigid motion explains what all its sensors feel. Rank is that of its motion subspace. \
+             Residual variance is the share that this motion does not explain, as the median over the sensors of the part." }
         table {
-            thead { tr { @for name in ["part", "sensors", "numbers of its motion", "unexplained"] { th scope="col" { (name) } } } }
+            thead { tr { @for name in ["part", "sensors", "rank", "residual variance"] { th scope="col" { (name) } } } }
             tbody {
                 @for PartLine { part, sensors, components, unexplained } in parts {
                     tr {
                         td data-label="part" { (part) }
                         td data-label="sensors" { (sensors) }
-                        td data-label="numbers of its motion" { (components) }
-                        td data-label="unexplained" { (percent(*unexplained)) " %" }
+                        td data-label="rank" { (components) }
+                        td data-label="residual variance" { (percent(*unexplained)) " %" }
                     }
                 }
             }
@@ -91,16 +91,16 @@ fn edge_table(scene: &Scene) -> Markup {
     let edges = scene.estimate.iter().flat_map(|parts| &parts.tree);
     html! {
         h2 { "Joints" }
-        p { "Confidence is the share of trees over resampled times that have the joint. It does not know of sensors that are on a \
-             wrong part." }
+        p { "Bootstrap support is the share of trees over resampled blocks of time that have the joint, given the parts: it does \
+             not account for sensors that are assigned to a wrong part." }
         table {
-            thead { tr { @for name in ["part", "joined to part", "confidence"] { th scope="col" { (name) } } } }
+            thead { tr { @for name in ["part", "joined to part", "bootstrap support"] { th scope="col" { (name) } } } }
             tbody {
                 @for edge in edges {
                     tr {
                         td data-label="part" { (edge.child) }
                         td data-label="joined to part" { (edge.parent) }
-                        td data-label="confidence" { @if let Some(share) = edge.confidence { (percent(share)) " %" } }
+                        td data-label="bootstrap support" { @if let Some(share) = edge.confidence { (percent(share)) " %" } }
                     }
                 }
             }

@@ -4,6 +4,7 @@ pub mod claims_table;
 pub mod estimated;
 pub mod figure_rows;
 pub mod figures;
+pub mod headline;
 pub mod markdown;
 pub mod numbers;
 pub mod overview;

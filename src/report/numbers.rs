@@ -31,6 +31,14 @@ pub fn percent(rate: f64) -> String {
     if rate == 0.0 || rate == 1.0 { format!("{}", 100.0 * rate) } else { format!("{:.1}", 100.0 * rate) }
 }
 
+/// A whole number with commas between thousands.
+pub fn thousands(number: usize) -> String {
+    let digits = number.to_string();
+    let groups: Vec<&str> =
+        digits.as_bytes().rchunks(3).rev().map(|group| std::str::from_utf8(group).expect("digits")).collect();
+    groups.join(",")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -48,6 +56,14 @@ mod tests {
         assert_eq!([1.0, 0.0081, 0.001, 1e-9].map(p_value), ["1", "0.008", "0.001", "< 0.001"]);
         assert_eq!(value(None, Some(Unit::Rate)), "–");
         assert_eq!(value(None, None), "–");
+    }
+
+    #[test]
+    fn thousands_have_commas() {
+        assert_eq!(
+            [0, 999, 1000, 56_000, 1_234_567].map(thousands),
+            ["0", "999", "1,000", "56,000", "1,234,567"]
+        );
     }
 
     #[test]

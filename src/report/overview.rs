@@ -1,17 +1,20 @@
-//! Show at first sight what was claimed, what came out, and how sure that is: a line for each claim that could be tested.
+//! Show what was claimed beside the headline, what came out, and how sure that is: a line for each claim that could be tested.
 
 use maud::{Markup, html};
 
 use super::claims_table::Row;
 use super::numbers;
 use super::ranges;
+use crate::analysis::published::HEADLINE;
 
 /// The claims of a run in one picture, a line each, with `mark` before its verdict.
 pub fn overview(rows: &[Row], class: &dyn Fn(&Row) -> String, mark: &dyn Fn(&Row) -> &'static str) -> Markup {
-    let tested = rows.iter().filter_map(|row| Some((row, ranges::drawing(row)?)));
+    // The headline has a sentence and a table of its own.
+    let others = rows.iter().filter(|row| row.id != HEADLINE);
+    let tested = others.filter_map(|row| Some((row, ranges::drawing(row)?)));
     html! {
         section id="overview" {
-            h2 { "What was claimed, and what came out" }
+            h2 { "What else was claimed, and what came out" }
             (ranges::legend())
             ul.overview {
                 @for (row, drawing) in tested {

@@ -9,6 +9,7 @@ use serde_json::Value;
 
 use super::claims_table::Row;
 use super::figure_rows::Counting;
+use super::headline::Headline;
 use super::overview::overview;
 use super::ranges;
 use super::viewer;
@@ -59,7 +60,7 @@ fn page(rows: &[Row], figures: &[(Figure, String)], scenes: &[Value], manifest: 
                         "Bayesian Body Schema Estimation using Tactile Information obtained through Coordinated \
                          Random Movements"
                     } " (Advanced Robotics, 2017)." }
-                    @for line in &manifest.headline { p.headline { (line) } }
+                    @if let Some(headline) = Headline::of(rows) { (headline.in_html()) }
                     nav {
                         @for (to, name) in
                             [("overview", "Overview"), ("viewer", "Body"), ("claims", "Claims"), ("figures", "Figures"), ("settings", "Settings"), ("manifest", "Manifest")]
@@ -85,13 +86,13 @@ fn page(rows: &[Row], figures: &[(Figure, String)], scenes: &[Value], manifest: 
     }
 }
 
-/// The body that moves. Its estimate is one draw, which is said.
+/// The body that moves. Its estimate is one posterior sample, which is said.
 fn movement_section(scenes: &[Value]) -> Markup {
     html! {
         h2 { "The body, what it feels, and what it learned" }
         p {
-            "The first simulation, as it begins to move, the first three dimensions of its body map, and the draw of highest \
-             log posterior of DPGMM-LJ."
+            "The first simulation, as it begins to move, the first three dimensions of its body map, and the posterior sample of \
+             DPGMM-LJ with the highest log posterior."
         }
         (viewer::page::section(scenes))
     }
@@ -99,7 +100,7 @@ fn movement_section(scenes: &[Value]) -> Markup {
 
 fn claims_section(rows: &[Row]) -> Markup {
     let count = |verdict: Verdict| {
-        // The headline of the other reading does not count.
+        // The headline by the other interpretation does not count.
         let of_run = rows.iter().filter(|row| row.reading == rows[0].reading);
         let with = of_run.filter(|row| row.verdict == Some(verdict)).count();
         format!("{with} {}", verdict.name())
@@ -108,9 +109,13 @@ fn claims_section(rows: &[Row]) -> Markup {
         section id="claims" {
             h2 { "Claims" }
             p {
-                (count(Verdict::Reproduced)) ", " (count(Verdict::NotReproduced)) ", " (count(Verdict::NotTestable))
-                ". The accepted range of each was fixed before the first run of its kind. Rows marked extension \
-                 count only the draw of highest log posterior of each simulation, which the paper does not."
+                @if rows.iter().all(|row| row.verdict.is_none()) {
+                    "A quick run illustrates what a full run shows, and judges nothing. "
+                } @else {
+                    (count(Verdict::Reproduced)) ", " (count(Verdict::NotReproduced)) ", " (count(Verdict::NotTestable))
+                    ". The accepted range of each was fixed before the first run of its kind. "
+                }
+                "Rows marked extension count only the most probable sample of each simulation, which the paper does not do."
             }
             table.claims {
                 thead {

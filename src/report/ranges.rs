@@ -149,7 +149,7 @@ pub fn legend() -> Markup {
     html! {
         p.legend {
             (key(accepted, "accepted range"))
-            (key(tick(18.0), "published number"))
+            (key(tick(18.0), "published value"))
             (key(reproduced, "reproduced value, 95 % interval"))
             (key(dot((14.0, Side::Above)), "value beyond the axis"))
         }

@@ -34,14 +34,14 @@ impl ExperimentSettings {
             "experiment.dimensions",
             dimensions,
             rising(dimensions) && dimensions[0] >= 1,
-            "a rising list of 1 to 60 dimensions, each at least 1",
+            "an increasing list of 1 to 60 dimensions, each at least 1",
         )?;
         let coordinations = &self.coordinations;
         check(
             "experiment.coordinations",
             coordinations,
             rising(coordinations) && coordinations.iter().all(|p| (0.0..=1.0).contains(p)),
-            "a rising list of 1 to 60 probabilities, 0 to 1",
+            "an increasing list of 1 to 60 probabilities, 0 to 1",
         )?;
         count("experiment.dimension", self.dimension)
     }

@@ -125,7 +125,7 @@ impl Settings {
             "baselines.clusters",
             clusters,
             rising(clusters) && clusters.iter().all(|clusters| (1..=most).contains(clusters)),
-            "a rising list of 1 to 60 numbers from 1 to the number of sensors, at most 1000",
+            "an increasing list of 1 to 60 numbers from 1 to the number of sensors, at most 1000",
         )
     }
 
@@ -138,7 +138,7 @@ impl Settings {
             simulations,
             (1..=10_000).contains(&simulations)
                 && simulations * conditions * self.schema.draws() <= 10_000_000,
-            "1 to 10000, with at most 10 million draws (schema.chains, schema.keep) in all conditions",
+            "1 to 10000, with at most 10 million posterior samples (schema.chains, schema.keep) in all conditions",
         )
     }
 }

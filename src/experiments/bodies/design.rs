@@ -66,14 +66,14 @@ impl Design {
         }
         if recordings.iter().any(|one| one.samples < 100 || !(0.0..=10.0).contains(&one.noise)) {
             return Err(wrong(
-                "a [[recording]] has samples of at least 100, and noise from 0 to 10".to_owned(),
+                "a [[recording]] must have samples of at least 100, and noise from 0 to 10".to_owned(),
             ));
         }
         let mut names: Vec<_> = bodies.iter().map(|file| file.file_stem()).collect();
         names.sort_unstable();
         if let Some(pair) = names.windows(2).find(|pair| pair[0] == pair[1]) {
             let name = pair[0].unwrap_or_default().to_string_lossy();
-            return Err(wrong(format!("two bodies are named {name}, and rows name bodies")));
+            return Err(wrong(format!("two body files are named {name}; give each a name of its own")));
         }
         Ok(design)
     }

@@ -49,7 +49,7 @@ pub fn study(design: &Design, text: &str, path: &Path, out: &Path) -> Result<(),
     let checkpoints = Checkpoints::new(out, &(Design { movements: 0, ..design.clone() }, agents));
     let each = design.recordings.len() as u64 + 1;
     let count = bodies.len() * settings.len() * design.movements;
-    let bar = progress(each * count as u64, format!("{count} movements"));
+    let bar = progress(each * count as u64, format!("{count} simulations"));
     let failed = AtomicBool::new(false);
     let run = |movement: &Movement| -> Result<Found, ExperimentError> {
         if let Some(found) = checkpoints.recall(&movement.name()) {
@@ -57,7 +57,7 @@ pub fn study(design: &Design, text: &str, path: &Path, out: &Path) -> Result<(),
             return Ok(found);
         }
         if failed.load(Ordering::Relaxed) {
-            return Err(ExperimentError::Stage("another movement failed".to_owned()));
+            return Err(ExperimentError::Stage("another simulation failed".to_owned()));
         }
         let found = movement.run(&|| bar.inc(1)).map_err(|message| {
             failed.store(true, Ordering::Relaxed);

@@ -54,7 +54,7 @@ impl Design {
             design.claims = read(ABLATION)?.claims;
         }
         if design.configurations.len() < 2 {
-            return Err(wrong("needs two of [[configuration]] at least".to_owned()));
+            return Err(wrong("needs at least two [[configuration]]".to_owned()));
         }
         let mut names = HashSet::new();
         if let Some(twice) = design.configurations.iter().find(|one| !names.insert(&one.name)) {

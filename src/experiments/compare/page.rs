@@ -24,13 +24,17 @@ impl Page<'_> {
     /// The page. `revision` is that of the program which made the table.
     pub fn text(&self, revision: &str) -> String {
         let Design { title, about, seed, settings, configurations, .. } = self.design;
-        let mut lines = vec![format!("# {title}\n"), about.trim().to_owned(), String::new()];
+        let mut lines = vec![format!("# {title}\n")];
         lines.push(format!(
-            "Seed {seed}, revision {revision}; all configurations on the same simulations: {}. Intervals are 95 % intervals \
-             over simulations (bootstrap). Of a claim over several conditions, the value is that which lies farthest \
-             towards the outside of the accepted range. All numbers: [comparison.csv](comparison.csv).\n",
-            flat(settings).join(", ")
+            "Seed {seed}, revision {revision}; the settings of all configurations are [below](#configurations).\n"
         ));
+        lines.extend([about.trim().to_owned(), String::new()]);
+        lines.push(
+            "All configurations are compared on the same simulations. Intervals are 95 % intervals over simulations \
+             (bootstrap). Of a claim over several conditions, the value is that which lies farthest towards the outside \
+             of the accepted range. All numbers: [comparison.csv](comparison.csv).\n"
+                .to_owned(),
+        );
         for (name, claims) in self.pictures() {
             let ids: Vec<&str> = claims.iter().map(|compared| compared.id.as_str()).collect();
             lines.push(format!("![{}]({name})\n", ids.join(", ")));
@@ -53,8 +57,8 @@ impl Page<'_> {
         }));
         lines.push(format!("\n## Changes from “{}”\n", configurations[0].name));
         lines.push(
-            "Bold: the interval excludes 0. Of a claim over several conditions, the one counts that decides the first \
-             configuration's value, among those at which both have one. Simulations are drawn in pairs.\n"
+            "Bold: the interval excludes 0. A claim over several conditions is compared at one of them: that which decides \
+             the first configuration's value, among those at which both have one. Simulations are drawn in pairs.\n"
                 .to_owned(),
         );
         lines.extend(self.header());
@@ -69,6 +73,10 @@ impl Page<'_> {
         }));
         lines.push("\n## Configurations\n".to_owned());
         lines.extend([row(["name", "settings"]), rule(2)]);
+        lines.push(row([
+            "all, over `reproduce/paper.toml` of that revision".to_owned(),
+            flat(settings).join(", "),
+        ]));
         lines.extend(configurations.iter().map(|one| row([one.name.clone(), self.words(one)])));
         lines.join("\n") + "\n"
     }

@@ -107,7 +107,7 @@ impl Design {
         }
         let known = |name: &String| design.factors.iter().any(|factor| factor.name == *name);
         if let Some(unknown) = design.groups.iter().find(|name| !known(name)) {
-            return Err(wrong(format!("groups by `{unknown}`, which is no factor")));
+            return Err(wrong(format!("groups by `{unknown}`, which is not a factor")));
         }
         let Draws { movements, distances, maps, inferences } = design.draws;
         let numbers = [movements, distances, maps, inferences];
@@ -158,9 +158,10 @@ impl Design {
         }
         let both = |option: &&Choice| option.gains.is_some() && option.settings.contains_key("motion");
         match self.factors.iter().flat_map(|factor| &factor.options).find(both) {
-            Some(option) => {
-                Err(format!("has gains and settings of motion in `{}`; gains are of a torque", option.label))
-            }
+            Some(option) => Err(format!(
+                "has gains and settings of motion in `{}`; give one of them (gains are those of a torque)",
+                option.label
+            )),
             None => Ok(()),
         }
     }
@@ -185,7 +186,7 @@ impl Design {
         }
         settings.experiment.seed = seed;
         if settings.experiment.simulations < 2 {
-            let message = "has one simulation; bodies differ, so let there be two at least";
+            let message = "has one simulation; simulations differ, so use at least two";
             return Err(ExperimentError::design(&origin, message));
         }
         Ok(settings)

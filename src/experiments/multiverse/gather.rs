@@ -94,7 +94,7 @@ fn read_all(design: &Design, out: &Path) -> Result<Vec<Specification>, Experimen
         None => one_program(all, out),
         Some(first) => {
             let message = format!(
-                "lacks {} of {} specifications, {first} the first of them; run their shards before they are gathered",
+                "lacks {} of {} specifications (the first is {first}); run their shards before --gather",
                 missing.len(),
                 missing.len() + all.len()
             );
@@ -109,7 +109,7 @@ fn one_program(all: Vec<Specification>, out: &Path) -> Result<Vec<Specification>
         return Ok(all);
     };
     let message = format!(
-        "specifications 1 and {} are of two revisions of this program; run all of them by one, in a new folder",
+        "specifications 1 and {} were run by two revisions of this program; run all of them by one, in a new folder",
         other.summary.number
     );
     Err(FileError::new(&out.join("specifications"), message).into())

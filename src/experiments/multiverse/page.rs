@@ -15,22 +15,21 @@ const SHOWN: usize = 4;
 /// The page.
 pub fn page(evaluation: &Evaluation) -> String {
     let Evaluation { design, .. } = evaluation;
-    let mut lines = vec!["# A multiverse of replications\n".to_owned(), answer(evaluation), String::new()];
-    lines.push(made(evaluation));
+    let mut lines = vec!["# A multiverse of replications\n".to_owned()];
+    lines.extend([base(evaluation), answer(evaluation), String::new(), made(evaluation)]);
     lines.push("\n## In what share does each claim hold?\n".to_owned());
     lines.push(
-        "A claim holds in a specification if its value is within the accepted range; without a value it does not hold, and how \
-         many have one stands beside. \
-         Intervals are 95 % intervals over resamples of the movements, with which go their bodies, and of the \
-         specifications of each. All numbers: [shares.csv](shares.csv).\n"
+        "A claim holds in a specification if its value lies within the accepted range. Without a value it does not hold; \
+         the third column counts the specifications with a value. Intervals are 95 % intervals over resamples of the \
+         movements, and of the specifications of each. All numbers: [shares.csv](shares.csv).\n"
             .to_owned(),
     );
     lines.extend(shares(evaluation));
     lines.push("\n## What decides?\n".to_owned());
     lines.push(format!(
-        "The {SHOWN} largest shares of each claim's variance (ω² of a linear model of all choices), for single choices and for \
-         two together beyond what each does alone. Intervals are 95 % intervals by the jackknife over movements. All numbers: \
-         [variance.csv](variance.csv).\n"
+        "The {SHOWN} largest shares of each claim's variance (ω² of a linear model of all choices). A share of two \
+         choices together is what they add to the shares of each alone. Intervals are 95 % intervals by the jackknife \
+         over movements. All numbers: [variance.csv](variance.csv).\n"
     ));
     lines.extend(decisive(evaluation));
     lines.push("\n## Specification curves\n".to_owned());
@@ -49,24 +48,34 @@ pub fn page(evaluation: &Evaluation) -> String {
     lines.join("\n").trim_end().to_owned() + "\n"
 }
 
+/// What the multiverse is of, so that nobody takes it for one of another default.
+fn base(evaluation: &Evaluation) -> String {
+    let Design { seed, settings, .. } = evaluation.design;
+    format!(
+        "This multiverse is of `reproduce/paper.toml` as of revision {}, seed {seed}. Every specification has `{}`. It says \
+         nothing about a default that is not among the specifications.\n",
+        evaluation.all[0].summary.revision,
+        flat(settings).join("`, `")
+    )
+}
+
 /// The answer in a paragraph.
 fn answer(evaluation: &Evaluation) -> String {
     let find = |group: &str, claim: &str| {
         evaluation.shares.iter().find(|row| row.group == group && row.claim == claim)
     };
     let of = |group: &str, claim: &str| find(group, claim).map_or("–".to_owned(), in_words);
-    let count = evaluation.all.len();
     let resolved = evaluation.all.iter().filter(|one| one.summary.resolved).count();
     let failed = evaluation.all.iter().filter(|one| one.summary.failed > 0).count();
-    let mut words = format!(
-        "Of {count} reasonable ways to replicate the paper, {} have a tree accuracy within the accepted range; among the \
-         {resolved} whose movements the physics step resolves, {}. All claims together hold in {}. {failed} failed: their \
-         movement was unstable, or their sensors gave no map.",
+    let mut words = values(evaluation);
+    words += &format!(
+        "Of all specifications, {} have a tree accuracy within the accepted range; of the {resolved} whose movements the time \
+         step resolves, {}. All claims together hold in {}. {failed} specifications failed: their movement was unstable, or \
+         their sensors gave no map.",
         of("all", HEADLINE),
         of("resolved", HEADLINE),
         of("all", TOGETHER),
     );
-    words += &values(evaluation);
     let headline = evaluation.variance.iter().filter(|row| row.claim == HEADLINE && row.with.is_empty());
     let mut sources: Vec<&VarianceRow> = headline.filter(|row| row.share.is_some()).collect();
     sources.sort_by(|a, b| b.share.unwrap_or_default().total_cmp(&a.share.unwrap_or_default()));
@@ -83,8 +92,9 @@ fn answer(evaluation: &Evaluation) -> String {
         let (middle, low, high) = (joint.expected, joint.expected_low, joint.expected_high);
         let percent = |share: f64| numbers::value(Some(share), Some(Unit::Rate));
         words += &format!(
-            " If the published rate were true in every one of the {} whose draws are of separate chains, {} of them would be within the range by chance \
-             (95 % of simulated multiverses: {} to {}), where {} are: {} of simulated multiverses have as few.",
+            " {} specifications have samples of separate chains. If the published rate were true in each of these, {} of \
+             them would lie within the range by chance (95 % of simulated multiverses: {} to {}). In fact {} of them do; \
+             {} of simulated multiverses have as few.",
             joint.n,
             percent(middle),
             percent(low),
@@ -107,10 +117,11 @@ fn values(evaluation: &Evaluation) -> String {
         count(&|point| point.interval.is_some_and(|(low, high)| (low..=high).contains(&published)))
     });
     format!(
-        " {} have no eligible draw to judge the tree accuracy by. Of the other {}, {} lie below the range ({} at 0 %) and {} above; the \
-         intervals of {reach} reach the published number.",
-        evaluation.all.len() - points.len(),
+        "Of {} specifications, {} have an eligible sample, and with it a tree accuracy. {} of these lie within the accepted \
+         range, {} below it ({} at 0 %) and {} above; the intervals of {reach} reach the published number. ",
+        evaluation.all.len(),
         points.len(),
+        count(&|point| (low..=high).contains(&point.value)),
         count(&|point| point.value < low),
         count(&|point| point.value == 0.0),
         count(&|point| point.value > high),
@@ -136,16 +147,13 @@ fn with_ends(share: Option<f64>, ends: Option<(f64, f64)>, open: &str, close: &s
 
 /// How it was made.
 fn made(evaluation: &Evaluation) -> String {
-    let Design { seed, draws, settings, .. } = evaluation.design;
-    let Draws { movements, distances, maps, inferences } = draws;
+    let Draws { movements, distances, maps, inferences } = evaluation.design.draws;
     format!(
-        "Made by `bodyschema multiverse` (revision {}, seed {seed}): {movements} movements, of each {distances} matrices of \
-         distances, of each {maps} kinds of body map, of each {inferences} ways to infer, drawn evenly from all combinations of the choices below by a scrambled \
-         Sobol sequence; {}. Any specification can be run again by its number: its settings are in \
-         specifications/NUMBER/settings.toml, and `bodyschema multiverse --only NUMBER` makes that folder. All values: \
-         [multiverse.csv](multiverse.csv); what each specification is: [specifications.csv](specifications.csv).",
-        evaluation.all[0].summary.revision,
-        flat(settings).join(", ")
+        "Made by `bodyschema multiverse`: {movements} movements, of each {distances} matrices of distances, of each {maps} \
+         kinds of body map, of each {inferences} ways to infer. They are drawn evenly from all combinations of the choices \
+         below, by a scrambled Sobol sequence. A specification can be run again by its number, with `bodyschema multiverse \
+         --only NUMBER`; its settings are in specifications/NUMBER/settings.toml. All values: \
+         [multiverse.csv](multiverse.csv); what each specification is: [specifications.csv](specifications.csv)."
     )
 }
 

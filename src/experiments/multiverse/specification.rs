@@ -168,7 +168,7 @@ pub fn read(out: &Path, design: &Design, number: usize) -> Result<Option<Specifi
     let found = Specification { summary, rows: read_rows(&folder.join(CLAIMS))? };
     let claims = found.rows.iter().map(|row| row.claim.as_str());
     if found.summary.number != number || !claims.eq(design.claims.iter().map(|claim| claim.id.as_str())) {
-        let message = format!("is not what was written; run it again by --only {number}");
+        let message = format!("was changed after it was written; run it again with --only {number}");
         return Err(FileError::new(&folder, message).into());
     }
     Ok(Some(found))

@@ -153,7 +153,6 @@ pub fn check_design(text: &str, out: &Path) -> Result<(), ExperimentError> {
     if read_text(&path)? == text {
         return Ok(());
     }
-    let message =
-        "is another design, whose results are in this folder; choose another folder, or that design";
+    let message = "is another design, whose results are in this folder; choose another folder or that design";
     Err(FileError::new(&path, message).into())
 }

@@ -24,9 +24,10 @@ use crate::files::provenance::Provenance;
 use crate::files::result_folder::ResultFolder;
 use crate::files::ro_crate::RO_CRATE;
 use crate::numerics::rng::stream;
-use crate::pipeline::Condition;
-use crate::report::claims_table::{comparison, markdown, rows};
+use crate::pipeline::{BaselineRecord, Condition, Record};
+use crate::report::claims_table::{Row, illustrated, markdown, rows};
 use crate::report::figures::Figures;
+use crate::report::headline::Headline;
 use crate::report::{page, plot};
 use crate::settings::Settings;
 use crate::stages::agent::Agent;
@@ -38,8 +39,10 @@ use crate::stages::simulate::{Resolution, Trajectory, simulate};
 pub struct Finished {
     /// What was run, in words.
     pub preamble: String,
-    /// All claims, with that of the other reading after the headline.
+    /// All claims, with the headline by the other interpretation after that of the run.
     pub judged: Vec<Judged>,
+    /// The same as a table; of a quick run, without verdicts.
+    pub rows: Vec<Row>,
 }
 
 /// Runs an experiment: all its simulations, conditions and figures.
@@ -65,11 +68,10 @@ pub fn reproduce(run: &Run) -> Result<Finished, ExperimentError> {
         folder.remember(std::mem::take(&mut kept.files));
     }
 
-    let evidence = write_draws(run, &found, &mut folder)?;
+    let (records, baselines) = write_samples(run, &found, &mut folder)?;
+    let (mut judged, evidence) = judge_all(run.experiment, run.settings, records, &baselines);
     write_figures(run, &tasks, &found, &movements, &evidence, &mut folder)?;
     scenes::write(run, &tasks, &found, &mut folder)?;
-    let mut judged = judge(run.experiment, &evidence);
-    add_single_bodies(run.experiment, &mut judged, &evidence_of_bodies(run, &found, &evidence));
     let resolution =
         found.iter().map(|found| found.resolution).fold(Resolution::default(), Resolution::worse);
     let mut preamble = preamble(run, resolution);
@@ -79,14 +81,15 @@ pub fn reproduce(run: &Run) -> Result<Finished, ExperimentError> {
         judged.insert(1, headline);
         preamble += &other.in_words();
     }
-    folder.write_rows("claims.csv", rows(&judged))?;
-    folder.write_text("claims.md", &markdown(&preamble, &judged))?;
+    let rows = if run.quick { illustrated(rows(&judged)) } else { rows(&judged) };
+    folder.write_rows("claims.csv", &rows)?;
+    folder.write_text("claims.md", &markdown(&preamble, &rows))?;
     folder.write_text("settings.toml", &settings_file(run))?;
-    folder.write_manifest(manifest(run, &preamble, &tasks, &found, &judged)?)?;
+    folder.write_manifest(manifest(run, &preamble, &tasks, &found, &rows)?)?;
     page::write(run.out)?;
     write_circumstances(run.out, begun)?;
     checkpoints.clear()?;
-    Ok(Finished { preamble, judged })
+    Ok(Finished { preamble, judged, rows })
 }
 
 /// Files of an earlier run that must not stand beside those of this one while it works.
@@ -152,35 +155,46 @@ fn apart(all: &[Task], outcomes: Vec<Outcome>) -> Result<(Vec<Found>, Vec<Outcom
     Ok((found.collect::<Result<_, _>>()?, other.into_iter().map(|(_, outcome)| outcome).collect()))
 }
 
-/// Writes all draws, and in experiment 1 all clusterings; returns the estimates over them.
-fn write_draws(run: &Run, found: &[Found], folder: &mut ResultFolder) -> Result<Evidence, FileError> {
+/// Writes all posterior samples, and in experiment 1 all clusterings, and returns them.
+fn write_samples(
+    run: &Run,
+    found: &[Found],
+    folder: &mut ResultFolder,
+) -> Result<(Vec<Record>, Vec<BaselineRecord>), FileError> {
     let records: Vec<_> = found.iter().flat_map(|found| &found.records).copied().collect();
     folder.write_rows("samples.csv", &records)?;
     let baselines: Vec<_> = found.iter().flat_map(|found| &found.baselines).copied().collect();
     if run.experiment == Experiment::Exp1 {
         folder.write_rows("baselines.csv", &baselines)?;
     }
-    let experiment = &run.settings.experiment;
-    Ok(Evidence {
-        conditions: Conditions::new(records, experiment.simulations, experiment.seed),
-        baselines: baseline_estimates(&baselines),
-        reading: run.settings.schema.sampler,
-    })
+    Ok((records, baselines))
 }
 
-/// What each simulation alone offers to judge claims by.
-fn evidence_of_bodies(run: &Run, found: &[Found], evidence: &Evidence) -> Vec<Evidence> {
-    let all: Vec<_> = found.iter().flat_map(|found| &found.baselines).copied().collect();
+/// Judges all claims of an experiment by its samples and clusterings, with how many single simulations show each; and what they are
+/// judged by.
+pub fn judge_all(
+    experiment: Experiment,
+    settings: &Settings,
+    records: Vec<Record>,
+    baselines: &[BaselineRecord],
+) -> (Vec<Judged>, Evidence) {
+    let (simulations, seed) = (settings.experiment.simulations, settings.experiment.seed);
+    let reading = settings.schema.sampler;
+    let conditions = Conditions::new(records, simulations, seed);
+    let evidence = Evidence { conditions, baselines: baseline_estimates(baselines), reading };
     let of = |simulation: usize| {
         let baselines: Vec<_> =
-            all.iter().filter(|record| record.simulation == simulation).copied().collect();
+            baselines.iter().filter(|record| record.simulation == simulation).copied().collect();
         Evidence {
             conditions: evidence.conditions.redrawn(&[simulation]),
             baselines: baseline_estimates(&baselines),
-            reading: evidence.reading,
+            reading,
         }
     };
-    (1..=run.settings.experiment.simulations).map(of).collect()
+    let alone: Vec<Evidence> = (1..=simulations).map(of).collect();
+    let mut judged = judge(experiment, &evidence);
+    add_single_bodies(experiment, &mut judged, &alone);
+    (judged, evidence)
 }
 
 /// Writes the table and the picture of every figure that the experiment shows.
@@ -263,7 +277,7 @@ fn manifest(
     preamble: &str,
     tasks: &[Task],
     found: &[Found],
-    judged: &[Judged],
+    rows: &[Row],
 ) -> Result<Manifest, FileError> {
     let settings = run.settings;
     let hash = |path: &Path| HashedFile::new(&path.display().to_string(), path);
@@ -278,7 +292,7 @@ fn manifest(
     Ok(Manifest {
         experiment: Some(run.experiment.name().to_owned()),
         summary: Some(preamble.to_owned()),
-        headline: judged.iter().filter_map(comparison).collect(),
+        headline: Headline::of(rows).map(|headline| headline.sentence).into_iter().collect(),
         quick: Some(run.quick),
         seed: settings.experiment.seed,
         provenance: Provenance::here(),

@@ -2,8 +2,10 @@
 
 mod experiment;
 mod reading;
+mod rejudge;
 mod run;
 mod scenes;
 
-pub use self::experiment::{Finished, reproduce};
+pub use self::experiment::reproduce;
+pub use self::rejudge::rejudge;
 pub use self::run::Run;

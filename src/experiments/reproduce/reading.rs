@@ -33,10 +33,7 @@ impl OtherReading {
     pub fn of(run: &Run, tasks: &[Task]) -> Option<Self> {
         let condition = condition();
         let same: Vec<&Task> = tasks.iter().filter(|task| task.conditions.contains(&condition)).collect();
-        let sampler = match run.settings.schema.sampler {
-            Sampler::Equations | Sampler::SplitMerge => Sampler::AuthorsCode,
-            Sampler::AuthorsCode => Sampler::Equations,
-        };
+        let sampler = other_than(run.settings.schema.sampler);
         let task = |task: &&Task| -> Result<Task, SettingsError> {
             Ok(Task {
                 name: format!("other-reading/simulation-{}", task.simulation),
@@ -68,7 +65,7 @@ impl OtherReading {
     pub fn in_words(&self) -> String {
         let Some(Task { settings, .. }) = self.tasks.first() else { return String::new() };
         let (chains, sweeps) = (settings.schema.chains, settings.schema.sweeps);
-        format!(" The headline {} has {chains} chains of {sweeps} sweeps.", self.sampler.in_words())
+        format!(" For the headline, the {} uses {chains} chains of {sweeps} sweeps.", self.sampler.in_words())
     }
 
     /// All its draws, and the headline by them.
@@ -92,6 +89,14 @@ impl OtherReading {
             judged.place = reason;
         }
         (records, judged)
+    }
+}
+
+/// The interpretation that stands beside that of a run.
+pub fn other_than(sampler: Sampler) -> Sampler {
+    match sampler {
+        Sampler::Equations | Sampler::SplitMerge => Sampler::AuthorsCode,
+        Sampler::AuthorsCode => Sampler::Equations,
     }
 }
 

@@ -50,16 +50,18 @@ pub fn preamble(run: &Run, resolution: Resolution) -> String {
         true => "held out: neither the search for the default settings nor the study of them used it",
         false => "used by the search for the default settings or the study of them",
     };
-    let scope = match experiment.simulations {
-        1 => "Intervals are over the chains of this one simulation; another can differ by more.",
-        _ => "Intervals are over simulations (bootstrap).",
+    let (simulations, scope) = match experiment.simulations {
+        1 => (
+            "1 simulation".to_owned(),
+            "Intervals are over the chains of this one simulation; another can differ by more.",
+        ),
+        several => (format!("{several} simulations"), "Intervals are over simulations (bootstrap)."),
     };
     let resolved = resolution.in_words("the movements");
     format!(
-        "{what}; {} simulation(s), {} chains of {} sweeps for each condition, seed {} ({seed}), revision {}; {resolved}.{caution} {scope} \
-         Rows marked extension count, of each simulation, only the draw of highest log posterior, which the paper does \
-         not.",
-        experiment.simulations,
+        "{what}. {simulations}, {} chains of {} sweeps for each condition, seed {} ({seed}), revision {}. Resolution: {resolved}.{caution} \
+         {scope} Rows marked extension count only the most probable sample of each simulation (highest log posterior), which the \
+         paper does not do.",
         schema.chains,
         schema.sweeps,
         experiment.seed,

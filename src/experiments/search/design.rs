@@ -120,10 +120,10 @@ impl Design {
             design.score = read(SEARCH)?.score;
         }
         if design.round.is_empty() {
-            return Err(wrong("needs a [[round]] at least".to_owned()));
+            return Err(wrong("needs at least one [[round]]".to_owned()));
         }
         if design.round.iter().any(|round| round.candidates == 0) {
-            return Err(wrong("has a [[round]] with candidates = 0; let each try one at least".to_owned()));
+            return Err(wrong("has a [[round]] with candidates = 0; use at least 1".to_owned()));
         }
         if design.draws.movements > 0 && design.factor.iter().any(|factor| factor.options.is_empty()) {
             return Err(wrong("has a factor without options".to_owned()));

@@ -18,8 +18,8 @@ impl Design {
     /// The page of a search, given what was tried in each round.
     pub fn page(&self, rounds: &[(usize, Vec<Tried>)]) -> String {
         let mut lines = vec![format!(
-            "{} candidates, seed {}, revision {}. Score: weighted share of claims, in part for those nearly satisfied; \
-             the claims and their weights stand in reproduce/search.toml.\n",
+            "{} candidates, seed {}, revision {}. The score is the weighted share of reproduced claims, with partial credit for values \
+             close to their accepted range; reproduce/search.toml has the claims and their weights.\n",
             rounds[0].1.len(),
             self.seed,
             env!("BODYSCHEMA_REVISION")
@@ -33,8 +33,8 @@ impl Design {
             lines.push(String::new());
         }
         lines.push(
-            "Bold: within the accepted range. Unresolved: anchors come apart by more than 1 cm, or a part turns by more \
-             than a tenth of a turn in a step; such a candidate never wins.\n"
+            "Bold: within the accepted range. Unresolved: the movement is too fast for the time step (joint anchors separate by \
+             more than 1 cm, or a part rotates by more than a tenth of a revolution in a step); such a candidate never wins.\n"
                 .to_owned(),
         );
         for (at, tried) in rounds {
@@ -57,11 +57,11 @@ impl Design {
             let failed = match failures.first() {
                 None if resolution.is_resolved() => String::new(),
                 None => format!(
-                    "; unresolved: {:.0} mm, {:.2} turns",
+                    "; unresolved: {:.0} mm, {:.2} revolutions",
                     1e3 * resolution.anchor_separation,
                     resolution.turn
                 ),
-                Some(first) => format!("; {} parts failed: {}", failures.len(), first.reason),
+                Some(first) => format!("; {} simulations failed: {}", failures.len(), first.reason),
             };
             let mut cells = vec![candidate.name.clone(), format!("{score:.3}")];
             cells.extend(terms.iter().map(|(judged, _)| value(judged)));
@@ -79,8 +79,8 @@ impl Design {
         let names = self.claims();
         let mut lines = vec![
             format!(
-                "How often two claims hold together, of {} resolved candidates without a failure in round {round} (the \
-                 diagonal: alone)\n",
+                "Trade-offs: number of candidates that reproduce both claims, of {} resolved ones without a failure in round {round} \
+                 (on the diagonal: that reproduce the claim)\n",
                 held.0.len()
             ),
             row(std::iter::once("").chain(tested.iter().map(|&a| names[a]))).replacen("|  |", "| |", 1),
@@ -90,24 +90,25 @@ impl Design {
             let counts = tested.iter().map(|&b| held.together(&[a, b]).to_string());
             lines.push(row(std::iter::once(names[a].to_owned()).chain(counts)));
         }
-        lines.push(format!("\nAll of these claims together hold for {} of them.", held.together(&tested)));
+        lines.push(format!("\n{} of them reproduce all of these claims.", held.together(&tested)));
         let never: Vec<&str> =
             tested.iter().filter(|&&a| held.together(&[a]) == 0).map(|&a| names[a]).collect();
         if !never.is_empty() {
-            lines.push(format!("Never satisfied: {}.", never.join(", ")));
+            lines.push(format!("Never reproduced: {}.", never.join(", ")));
         }
         for (at, &a) in tested.iter().enumerate() {
             for &b in &tested[at + 1..] {
                 let (one, other) = (held.together(&[a]), held.together(&[b]));
                 if one > 0 && other > 0 && held.together(&[a, b]) == 0 {
                     let (first, second) = (names[a], names[b]);
-                    lines
-                        .push(format!("Never together: {first} (alone {one}) and {second} (alone {other})."));
+                    lines.push(format!(
+                        "Never reproduced together: {first} (alone {one}) and {second} (alone {other})."
+                    ));
                 }
             }
         }
         lines.push(
-            "\nThe largest sets of claims that hold together, and for how many candidates\n".to_owned(),
+            "\nLargest sets of claims that single candidates reproduce together, and the number of these candidates\n".to_owned(),
         );
         lines.extend([row(["claims", "candidates", "which"]), rule(3)]);
         for (set, count) in held.largest_sets() {

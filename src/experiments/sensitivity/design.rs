@@ -55,7 +55,7 @@ impl Design {
         let mut names = HashSet::from([DEFAULT]);
         for factor in &design.factors {
             if !is_plain(&factor.name) || !names.insert(&factor.name) {
-                let rule = "is no name of a part: letters, digits and -, each once";
+                let rule = "cannot name a [[part]]: use letters, digits and -, and each name once";
                 return Err(wrong(format!("`{}` {rule}", factor.name)));
             }
             factor.check(&paper).map_err(wrong)?;
@@ -70,7 +70,7 @@ impl Design {
     pub fn only(self, name: &str, origin: &str) -> Result<Self, ExperimentError> {
         let names: Vec<&str> = self.factors.iter().map(|factor| factor.name.as_str()).collect();
         if !names.contains(&name) {
-            let message = format!("has no part `{name}`; it has {}", names.join(", "));
+            let message = format!("has no [[part]] named `{name}`; it has {}", names.join(", "));
             return Err(ExperimentError::design(origin, message));
         }
         Ok(Self { factors: self.factors.into_iter().filter(|factor| factor.name == name).collect(), ..self })
@@ -131,10 +131,10 @@ impl Factor {
     fn check(&self, paper: &Settings) -> Result<(), String> {
         let mut values = HashSet::new();
         if !self.values.iter().all(|value| values.insert(label(value))) {
-            return Err(format!("part `{}` has a value twice", self.name));
+            return Err(format!("[[part]] `{}` has a value twice", self.name));
         }
         match self.settings.iter().find(|key| default_value(paper, key).is_none()) {
-            Some(key) => Err(format!("part `{}` names `{key}`, which is no setting", self.name)),
+            Some(key) => Err(format!("[[part]] `{}` names `{key}`, which is not a setting", self.name)),
             None => Ok(()),
         }
     }

@@ -122,7 +122,7 @@ impl Page<'_> {
             .collect()
     }
 
-    /// The page, which begins with how much data stands behind each answer.
+    /// The page, which begins with the question and its answer.
     pub fn text(&self, revision: &str) -> String {
         let mut lines = vec!["# What the paper leaves open, and how much it matters\n".to_owned()];
         lines.extend(self.introduction(revision));
@@ -133,7 +133,7 @@ impl Page<'_> {
         lines.join("\n") + "\n"
     }
 
-    /// How much data stands behind each answer, the answers counted, and how to read them.
+    /// The question, the answers counted, the configuration, and how to read them.
     fn introduction(&self, revision: &str) -> [String; 5] {
         let Self { design, published, accept: (low, high), coordination: p, dimension: d, .. } = self;
         let pairs = design.factors.iter().flat_map(|factor| {
@@ -143,33 +143,34 @@ impl Page<'_> {
         let survivals: Vec<Survival> =
             pairs.iter().map(|(factor, value)| self.survival(factor, value)).collect();
         [
-            self.data(&pairs),
             format!(
-                "Would the published tree accuracy, {published}, survive another reasonable choice? Each setting that the \
-                 paper does not give is varied here around the default, one at a time and in pairs, all on the same \
-                 simulations. For {} other choices: {}.\n",
+                "Would the published tree accuracy, {published}, survive another reasonable choice of a setting that the \
+                 paper leaves open? The answers for {} other choices, of one setting or of a pair, are: {}.\n",
                 survivals.len(),
                 counts(&survivals)
             ),
             format!(
-                "Made by `reproduce/sensitivity.sh` (revision {revision}): {}; all else as in `reproduce/paper.toml`. \
-                 Numbers are at p = {p} and d = {d} unless a column says otherwise. Intervals are 95 % intervals over \
-                 simulations (bootstrap). *Change* is the difference from the default in percentage points, paired by \
-                 simulation. In the pictures the orange line is the default, and the dashed one the published rate. All \
-                 numbers, of every condition and measure: [sensitivity.csv](sensitivity.csv).\n",
+                "**Configuration:** the default, `reproduce/paper.toml` of revision {revision}, but {}. \
+                 `reproduce/sensitivity.sh` makes this page. All choices run on the same simulations. Numbers are at p = \
+                 {p} and d = {d} unless a column says otherwise. Intervals are 95 % intervals over simulations (bootstrap). \
+                 *Change* is the difference from the default in percentage points, paired by simulation. In the pictures \
+                 the orange line is the default, and the dashed line is the published rate. \
+                 [sensitivity.csv](sensitivity.csv) has all numbers, of every condition and measure.\n",
                 design.summary()
             ),
             format!(
                 "**yes**: the rate lies between {:.1} and {:.1} %, the range that counts as reproduced \
-                 (`reproduce/published.toml`); **perhaps**: it does not, but its interval reaches that range; **no**: the \
-                 whole interval lies outside, or there is no eligible draw.\n",
+                 (`reproduce/published.toml`). **perhaps**: the rate lies outside, but its interval reaches that range. \
+                 **no**: the whole interval lies outside, or there is no eligible sample.\n",
                 100.0 * low,
                 100.0 * high
             ),
+            self.data(&pairs),
             format!(
-                "With the default itself: {} ({}).\n",
+                "The default itself: {} ({}). These are {} simulations; `docs/results.md` has the results of the default.\n",
                 cell(self.main(DEFAULT, "", Model::DpgmmLj, Measure::Tree), true),
-                self.survival(DEFAULT, "").name()
+                self.survival(DEFAULT, "").name(),
+                self.simulations
             ),
         ]
     }
@@ -187,12 +188,11 @@ impl Page<'_> {
             return "**Data behind each answer:** none.\n".to_owned();
         };
         format!(
-            "**Data behind each answer:** {} simulations, {} draws in the median, of which {fewest} to {most} are eligible \
-             (median {}). A draw is eligible if it has the right number of parts and an adjusted Rand index (ARI) of 1; \
-             the tree accuracy is the share of eligible draws whose tree is right. Few eligible draws make wide \
-             intervals: read \u{201c}perhaps\u{201d} as \u{201c}not enough data\u{201d}. In what share of all reasonable choices \
-             together it survives is asked by the multiverse (`reproduce/multiverse.sh`); this page shows what one of them \
-             does.\n",
+            "**Data behind each answer:** {} simulations and a median of {} posterior samples, of which {fewest} to {most} are \
+             eligible (median {}). A sample is eligible if it has the right number of parts and an adjusted Rand index \
+             (ARI) of 1. The tree accuracy is the share of eligible samples that recover the true tree. Few eligible \
+             samples make wide intervals: read \u{201c}perhaps\u{201d} as \u{201c}not enough data\u{201d}. This page shows the \
+             effect of one choice; the multiverse (`reproduce/multiverse.sh`) combines all of them.\n",
             self.simulations,
             quantile(&all, 0.5),
             quantile(&eligible, 0.5)
@@ -247,12 +247,12 @@ impl Page<'_> {
             "value",
             "parts",
             "ARI",
-            "eligible draws",
+            "eligible samples",
             "tree accuracy",
             "change",
             "survives?",
             "DPGMM + Prim",
-            "best draw",
+            "most probable sample",
         ];
         let header: Vec<String> = COLUMNS.map(str::to_owned).into_iter().chain(elsewhere).collect();
         let mut lines = vec![

@@ -39,7 +39,7 @@ impl Survival {
             Self::Perhaps => "perhaps",
             Self::Higher => "no, higher",
             Self::Lower => "no, lower",
-            Self::Nothing => "no, no eligible draw",
+            Self::Nothing => "no, no eligible sample",
         }
     }
 }

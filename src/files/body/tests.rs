@@ -77,7 +77,10 @@ fn every_mistake_is_one_line_that_names_the_part() {
     let rod = "shape = \"cylinder\"\nfrom = [0, 0, 0]\nto = [0, 0, 1]\nradius = 0.1\n";
     for (lines, expected) in [
         (format!("{rod}radus = 0.1\n{joined}"), "line 15: unknown field `radus`"),
-        (format!("{rod}centre = [0, 0, 0]\n{joined}"), "part `arm`: it has centre, which a cylinder has not"),
+        (
+            format!("{rod}centre = [0, 0, 0]\n{joined}"),
+            "part `arm`: it has centre, which a cylinder does not have",
+        ),
         (
             format!("shape = \"sphere\"\nradius = 0.1\n{joined}"),
             "part `arm`: it lacks centre, which a sphere needs",
@@ -104,7 +107,7 @@ fn every_mistake_is_one_line_that_names_the_part() {
         (rod.to_owned(), "part `arm`: it lacks parent"),
         (
             format!("{rod}parent = \"leg\"\njoint = \"ball\"\n"),
-            "part `arm`: its parent `leg` is no earlier part",
+            "part `arm`: its parent `leg` is not an earlier part",
         ),
         (format!("{rod}parent = \"trunk\"\n"), "part `arm`: it lacks joint"),
         (format!("{rod}parent = \"trunk\"\njoint = \"hinge\"\n"), "part `arm`: a hinge needs axes"),

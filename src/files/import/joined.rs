@@ -68,7 +68,7 @@ pub fn joined(word: &str, links: &[Link]) -> Result<(Vec<PartEntry>, Vec<String>
                             .any(|turn| !matches!(turn, Turn::Other("free" | "floating"))) =>
                         {
                             notes.push(format!(
-                                "{word} `{}` is the root: its joints with the world are left out",
+                                "{word} `{}` is the root: its joints with the world are ignored",
                                 link.name
                             ));
                         }
@@ -109,7 +109,7 @@ impl<'a> Tree<'a> {
                 (None, [first, second, ..]) => {
                     let [first, second] = [first, second].map(|&branch| tree.name(branch));
                     return Err(format!(
-                        "{word} `{name}` has no shape, but `{first}` and `{second}` turn on it; give it a shape, or fix one of \
+                        "{word} `{name}` has no shape, but `{first}` and `{second}` rotate on it; give it a shape, or fix one of \
                          them to it"
                     ));
                 }
@@ -127,7 +127,7 @@ impl<'a> Tree<'a> {
             [] => Err(format!("no {word} has a shape; give it a box, sphere, cylinder or capsule")),
             [_] => Ok(tree),
             [.., second, first] => Err(format!(
-                "`{}` and `{}` are two bodies that nothing joins; keep one",
+                "`{}` and `{}` are two bodies without a joint between them; keep one",
                 tree.name(first),
                 tree.name(second)
             )),
@@ -184,7 +184,7 @@ impl Joint {
                 }
                 Turn::Other(kind) => {
                     return Err(format!(
-                        "its joint is `{kind}`, which a body has not; make it a hinge, or fix it"
+                        "its joint is `{kind}`, which is not supported; make it a hinge, or fix it"
                     ));
                 }
             }
@@ -194,7 +194,7 @@ impl Joint {
         };
         if others.iter().any(|other| (*other - *anchor).norm() > SAME_PLACE) {
             return Err(format!(
-                "it turns about {} places on its parent; give what is between them a shape, or let them coincide",
+                "it rotates about {} points of its parent; give what is between them a shape, or let them coincide",
                 anchors.len()
             ));
         }
@@ -216,7 +216,7 @@ impl Joint {
                 let cosine = first.dot(&second);
                 let note = || {
                     format!(
-                        "its two hinges are at {:.1} degrees and became a universal joint, whose second axis was turned to \
+                        "its two hinges are at {:.1} degrees and became a universal joint, whose second axis was rotated to \
                          a right angle",
                         cosine.acos().to_degrees()
                     )

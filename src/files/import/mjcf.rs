@@ -45,9 +45,8 @@ struct Bodies<'a> {
 /// The bodies of the element `mujoco`, each after the one that carries it.
 pub fn links<'a>(root: Node<'a, 'a>) -> Result<Vec<Link>, Wrong> {
     if let Some(node) = root.descendants().find(|node| node.has_tag_name("include")) {
-        return Err(
-            Element::new("include", node).wrong("is not read; put the content of that file in its place")
-        );
+        return Err(Element::new("include", node)
+            .wrong("is not supported; insert the content of that file in its place"));
     }
     let tied = |node: &Node| {
         ["connect", "weld"].contains(&node.tag_name().name()) && node.attribute("active") != Some("false")
@@ -55,7 +54,7 @@ pub fn links<'a>(root: Node<'a, 'a>) -> Result<Vec<Link>, Wrong> {
     let equalities = root.children().filter(|node| node.has_tag_name("equality"));
     if let Some(node) = equalities.flat_map(|node| node.children()).find(tied) {
         let label = format!("{} in equality", node.tag_name().name());
-        return Err(Element::new(label, node).wrong("ties bodies together beside the tree; leave it out"));
+        return Err(Element::new(label, node).wrong("joins bodies in addition to the tree; remove it"));
     }
     let worlds = || root.children().filter(|node| node.has_tag_name("worldbody"));
     let named = worlds().flat_map(|world| world.descendants()).filter(|node| node.has_tag_name("body"));
@@ -77,9 +76,8 @@ pub fn links<'a>(root: Node<'a, 'a>) -> Result<Vec<Link>, Wrong> {
             let Some(around) = around else {
                 let tag = node.tag_name().name();
                 if ["body", "geom", "joint", "freejoint", "frame"].contains(&tag) {
-                    return Err(
-                        Element::new(tag, node).wrong("is within an element that holds none; take it out")
-                    );
+                    return Err(Element::new(tag, node)
+                        .wrong("is within an element that cannot contain it; move it out"));
                 }
                 continue;
             };
@@ -100,7 +98,7 @@ impl<'a> Bodies<'a> {
             None => tag.to_owned(),
         };
         if UNREAD.contains(&tag) {
-            return Err(Element::new(label, node).wrong("is not read; write out what it stands for"));
+            return Err(Element::new(label, node).wrong("is not supported; write out what it stands for"));
         }
         match (tag, around.body) {
             ("body", parent) => {
@@ -129,7 +127,7 @@ impl<'a> Bodies<'a> {
                 Ok(None)
             }
             _ if BESIDE.contains(&tag) => Ok(None),
-            _ => Err(Element::new(label, node).wrong("is not known here; mind its name and where it is")),
+            _ => Err(Element::new(label, node).wrong("is unknown here; check its name and where it is")),
         }
     }
 

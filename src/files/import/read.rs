@@ -30,7 +30,7 @@ pub fn import(path: &Path, skin: SkinEntry) -> Result<Imported, FileError> {
 
 fn imported(text: &str, skin: SkinEntry) -> Result<Imported, Wrong> {
     let document = Document::parse(text)
-        .map_err(|error| format!("this is no well-formed XML, which MJCF and URDF are: {error}"))?;
+        .map_err(|error| format!("this is not well-formed XML, as MJCF and URDF must be: {error}"))?;
     let root = document.root_element();
     let (parts, notes) = match root.tag_name().name() {
         "mujoco" => joined("body", &mjcf::links(root)?)?,

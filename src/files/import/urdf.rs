@@ -22,14 +22,14 @@ pub fn links<'a>(root: Node<'a, 'a>) -> Result<Vec<Link>, Wrong> {
     let is_macro = |node: &Node| node.tag_name().namespace().is_some_and(|space| space.contains("xacro"));
     if let Some(node) = root.descendants().find(is_macro) {
         let wrong = Element::new(node.tag_name().name(), node);
-        return Err(wrong.wrong("is of xacro; expand it first: xacro FILE > robot.urdf"));
+        return Err(wrong.wrong("is an element of xacro; expand the file first: xacro FILE > robot.urdf"));
     }
     let mut nodes = Vec::new();
     let mut places = HashMap::new();
     for node in root.children().filter(|node| node.has_tag_name("link")) {
         let name = Element::new("link", node).needed("name")?;
         if places.insert(name, nodes.len()).is_some() {
-            return Err(labelled("link", name, node).wrong("is there twice; give one another name"));
+            return Err(labelled("link", name, node).wrong("exists twice; rename one"));
         }
         nodes.push((name, node));
     }
@@ -41,7 +41,9 @@ pub fn links<'a>(root: Node<'a, 'a>) -> Result<Vec<Link>, Wrong> {
             let end = child(node, tag).ok_or_else(|| element.wrong(format!("lacks <{tag}>; add it")))?;
             let link = element.part(end).needed("link")?;
             places.get(link).copied().ok_or_else(|| {
-                element.wrong(format!("has {tag} `{link}`, which is no link; add the link or mend the name"))
+                element.wrong(format!(
+                    "has {tag} `{link}`, which is not a link; add the link or correct the name"
+                ))
             })
         };
         let (parent, child) = (end("parent")?, end("child")?);
@@ -78,16 +80,14 @@ fn ordered<'j, 'a>(
     for joint in joints {
         if !is_carried.insert(joint.child) {
             let name = names[joint.child];
-            return Err(joint
-                .element
-                .wrong(format!("carries `{name}`, as another joint does; leave one out")));
+            return Err(joint.element.wrong(format!("carries `{name}`, as another joint does; remove one")));
         }
         carried[joint.parent].push(joint);
     }
     let roots: Vec<usize> = (0..names.len()).filter(|at| !is_carried.contains(at)).collect();
     if let [first, second, ..] = roots[..] {
         return Err(format!(
-            "links `{}` and `{}` are both roots, which no joint carries; join one to the other or leave it out",
+            "links `{}` and `{}` are both roots, which no joint carries; join one to the other or remove it",
             names[first], names[second]
         ));
     }
@@ -102,7 +102,7 @@ fn ordered<'j, 'a>(
     let reached: HashSet<usize> = order.iter().map(|(at, _)| *at).collect();
     match (0..names.len()).find(|at| !reached.contains(at)) {
         Some(at) => {
-            Err(format!("link `{}` is in a loop of joints or on one; leave a joint of it out", names[at]))
+            Err(format!("link `{}` is in a loop of joints or on one; remove a joint of it", names[at]))
         }
         None => Ok(order),
     }
@@ -202,7 +202,7 @@ fn shape(geometry: &Element) -> Result<Option<Shape>, Wrong> {
         "cylinder" => Shape::Cylinder { radius: radius()?, length: length()? },
         "capsule" => Shape::Capsule { radius: radius()?, length: length()? },
         "mesh" => return Ok(None),
-        _ => return Err(geometry.wrong("is not read; make it a box, sphere, cylinder or capsule")),
+        _ => return Err(geometry.wrong("is not supported; make it a box, sphere, cylinder or capsule")),
     }))
 }
 

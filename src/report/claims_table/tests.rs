@@ -34,32 +34,13 @@ fn judged(records: Vec<Record>) -> Vec<Judged> {
 }
 
 /// 20 eligible draws of one simulation, of which the last is wrong.
-fn nineteen_of_twenty() -> Vec<Judged> {
+pub fn nineteen_of_twenty() -> Vec<Judged> {
     judged((0..20).map(|chain| draw(1, chain, Some(chain < 19))).collect())
 }
 
 /// Without a draw that is eligible.
-fn no_eligible_draw() -> Vec<Judged> {
+pub fn no_eligible_sample() -> Vec<Judged> {
     judged(vec![draw(1, 0, None)])
-}
-
-#[test]
-fn the_comparison_carries_difference_and_both_intervals() {
-    let line = comparison(&nineteen_of_twenty()[0]).unwrap();
-    for words in [
-        "as the equations say: published 84.6 %",
-        "reproduced 95.0 %",
-        "n = 20",
-        "95 % interval 76.4 to 99.1 %",
-        "difference +10.4 points",
-        "if published 11/13",
-        "if published 77/91",
-    ] {
-        assert!(line.contains(words), "{line} lacks {words}");
-    }
-    let line = comparison(&no_eligible_draw()[0]).unwrap();
-    assert!(line.contains("no rate, 0 of 0 eligible draws"), "{line}");
-    assert_eq!(comparison(&nineteen_of_twenty()[1]), None);
 }
 
 #[test]
@@ -72,7 +53,7 @@ fn a_row_of_all_draws_has_numbers_for_machines_and_percent_for_people() {
     assert_eq!(row.verdict, Some(Verdict::NotReproduced));
     let people = [
         "not reproduced",
-        "Tree accuracy of DPGMM-LJ at p = 0.9, d = 14, as the equations say",
+        "Tree accuracy of DPGMM-LJ at p = 0.9, d = 14, equations interpretation",
         "84.6 %",
         "95.0 %",
         "76.4 to 99.1 %",
@@ -95,7 +76,7 @@ fn a_row_says_how_often_single_bodies_show_the_claim() {
     assert_eq!((row.bodies, row.bodies_share, row.bodies_together), (Some(4), Some(0.25), Some(0.0)));
     assert_eq!(row.one_body, Some(OneBody::Possible));
     let words = &row.in_words()[8];
-    assert!(words.starts_with("possible: 25.0 % of 4 bodies (4.6 to 69.9 %); with all others 0"), "{words}");
+    assert_eq!(words, "1 of 4 (4.6 to 69.9 %); none shows all claims");
     judged[0].single_bodies = Some(SingleBodies { alone: rate(0, 0), together: rate(0, 0) });
     assert_eq!(rows(&judged)[0].in_words()[8], "");
 }
@@ -118,7 +99,7 @@ fn a_claim_that_counts_draws_is_followed_by_its_best_draws() {
     );
     let [verdict, claim, published, reproduced, _, n, _, accepted, ..] = best.in_words();
     assert_eq!([&verdict, &published, &reproduced, &n, &accepted], ["extension", "", "100 %", "2", ""]);
-    assert!(claim.ends_with("d = 14, as the equations say: draw of highest log posterior"), "{claim}");
+    assert!(claim.ends_with("d = 14, equations interpretation: most probable sample"), "{claim}");
 
     // Only claims that count draws have a second row.
     let of = |id| rows.iter().filter(|row| row.id == id).count();
@@ -127,7 +108,7 @@ fn a_claim_that_counts_draws_is_followed_by_its_best_draws() {
 
 #[test]
 fn a_claim_without_draws_says_so_and_nowhere_none() {
-    let judged = no_eligible_draw();
+    let judged = no_eligible_sample();
     let rows = rows(&judged);
     let [verdict, _, _, reproduced, interval, n, spread, accepted, _, found, _] = rows[0].in_words();
     assert_eq!([&verdict, &reproduced, &interval, &n, &spread], ["not testable", "–", "", "0", ""]);
@@ -135,21 +116,29 @@ fn a_claim_without_draws_says_so_and_nowhere_none() {
     let by_eye = rows.iter().find(|row| row.id == "natural-movement").unwrap();
     assert_eq!((by_eye.unit, by_eye.accepted(), by_eye.in_words()[5].as_str()), (None, None, ""));
 
-    let page = markdown("What was run.", &judged);
-    assert!(page.starts_with("What was run.\n\n| verdict | claim | published | reproduced |"), "{page}");
-    assert!(page.trim_end().ends_with("0 of 0 eligible draws | not testable"), "{page}");
+    let page = markdown("What was run.", &rows);
+    assert!(page.starts_with("**No sample at p = 0.9 and d = 14 is eligible"), "{page}");
+    assert!(page.contains("\n\nWhat was run.\n\n| verdict | claim | published | reproduced |"), "{page}");
     assert!(!page.contains("| none |"), "{page}");
-    let table = terminal_table(&judged);
+    let table = terminal_table(&rows);
     assert!(table.starts_with("verdict "), "{table}");
     assert!(table.contains("\nnot testable | tree-accuracy "), "{table}");
     assert!(table.contains("\nextension    | tree-accuracy "), "{table}");
 }
 
 #[test]
+fn a_quick_run_illustrates_and_judges_nothing() {
+    let rows = illustrated(rows(&nineteen_of_twenty()));
+    let verdicts: Vec<&str> = rows.iter().map(Row::verdict_in_words).collect();
+    assert!(verdicts.contains(&"illustration") && verdicts.contains(&"extension"), "{verdicts:?}");
+    assert!(!terminal_table(&rows).contains("not reproduced"));
+}
+
+#[test]
 fn a_table_is_read_back_as_it_was_written() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("claims.csv");
-    for judged in [nineteen_of_twenty(), no_eligible_draw()] {
+    for judged in [nineteen_of_twenty(), no_eligible_sample()] {
         let rows = rows(&judged);
         crate::files::tables::write_rows(&path, &rows).unwrap();
         assert_eq!(crate::files::tables::read_rows::<Row>(&path).unwrap(), rows);

@@ -29,7 +29,7 @@ pub fn parts(rows: &[PartsRow], mark: Option<&Mark>) -> Result<String, PlotError
     let dimensions = few("d", rows.iter().map(|row| row.dimension))?;
     let of = |counting| rows.iter().filter(move |row| row.counting == counting);
     let Some(most) = of(Counting::AllDraws).map(|row| row.count).max() else {
-        return plot_error("has no row that counts all draws");
+        return plot_error("has no row that counts all samples");
     };
 
     let legend = parts_legend(of(Counting::BestDraw).next().is_some(), mark);
@@ -51,7 +51,7 @@ pub fn parts(rows: &[PartsRow], mark: Option<&Mark>) -> Result<String, PlotError
         for (at, dimension) in dimensions.iter().enumerate() {
             let (line, column) = (at / COLUMNS, at % COLUMNS);
             let lowest = at + COLUMNS >= dimensions.len();
-            let x = Axis::new(if lowest { "draws" } else { "" }, 0.0..1.12 * most.max(1.0), 2);
+            let x = Axis::new(if lowest { "samples" } else { "" }, 0.0..1.12 * most.max(1.0), 2);
             let x = Axis { ticks: x.ticks.into_iter().filter(|tick| tick.fract() == 0.0).collect(), ..x };
             let y = Axis { ticks: sparse(&whole, every), ..Axis::new("", range.clone(), 5) };
             let outer = Rect {
@@ -94,14 +94,14 @@ fn one_dimension(
 /// The legend of [`parts`]; `extension` says whether the draws of highest log posterior are shown.
 fn parts_legend(extension: bool, mark: Option<&Mark>) -> Legend {
     let mut legend = Legend::default();
-    legend.add(Key::Band(BLUE, BAR), "draws");
+    legend.add(Key::Band(BLUE, BAR), "posterior samples");
     legend.add(Key::Line(INK, 2.0), "mean");
     legend.add(Key::Band(INK, FAINT), "its 95 % interval");
     if let Some(mark) = mark {
         legend.add(Key::Dashes, mark.name.clone());
     }
     if extension {
-        legend.add(Key::Marker(best(), 4.4), "mean of the draws of highest log posterior (extension)");
+        legend.add(Key::Marker(best(), 4.4), "mean of the most probable samples (extension)");
     }
     legend
 }
@@ -167,7 +167,7 @@ pub fn boxes(rows: &[BoxRow]) -> Result<String, PlotError> {
     let mut legend = Legend::default();
     legend.add(Key::Line(VERMILLION, 2.6), "median");
     legend.add(Key::Band(BLUE, FAINT), "quartiles");
-    legend.add(Key::Line(INK, 1.2), "within 1.5 box heights");
+    legend.add(Key::Line(INK, 1.2), "within 1.5 interquartile ranges");
     legend.add(Key::Marker(extreme(), 3.2), "lowest or highest, if beyond");
 
     let numbers = 16.0;

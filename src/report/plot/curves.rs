@@ -86,7 +86,7 @@ impl Kind {
         };
         let lowest = rows.iter().flat_map(|row| [row.value, row.cells.lowest]).flatten().fold(0.0, f64::min);
         let y = if self.rates {
-            Axis { label: percent, ..Axis::new("right trees", -0.04..1.04, 5) }
+            Axis { label: percent, ..Axis::new("tree accuracy", -0.04..1.04, 5) }
         } else {
             Axis::new("mean adjusted Rand index", (lowest - 0.03).max(-1.02)..1.02, 5)
         };
@@ -181,13 +181,13 @@ fn legend(
     legend.add(Key::Whisker, "95 % interval");
     if let Some(&style) = styles.iter().find(|style| style.hollow) {
         let which = if extensions > 1 { "hollow: " } else { "" };
-        legend.add(Key::Marker(style, RADIUS), format!("{which}draw of highest log posterior (extension)"));
+        legend.add(Key::Marker(style, RADIUS), format!("{which}most probable sample (extension)"));
     }
     if rows.iter().any(|row| row.cells.lowest.is_some()) {
         legend.add(Key::Band(INK, FAINT), "lowest to highest simulation");
     }
     if rows.iter().any(|row| row.value.is_none()) {
-        let what = if kind.rates { "no eligible draw" } else { "no draw" };
+        let what = if kind.rates { "no eligible sample" } else { "no sample" };
         legend.add(Key::Marker(missing(), RADIUS), what);
     }
     if let Some(mark) = mark {

@@ -43,7 +43,7 @@ pub fn read(folder: &Path, sensors: usize) -> Result<Parts, FileError> {
     let (rows, columns, labels) = npy::read_assignments(&assignments)?;
     if (rows, columns) != (draws.len(), sensors) {
         let message = format!(
-            "has {rows} draws of {columns} sensors, but samples.csv has {} draws, and there are {sensors} sensors",
+            "has {rows} samples of {columns} sensors, but samples.csv has {} samples, and there are {sensors} sensors",
             draws.len()
         );
         return Err(FileError::new(&assignments, message));

@@ -94,10 +94,7 @@ fn tactile(sources: &Sources) -> Result<PathBuf, FileError> {
     }
     let names = ["tactile.npy", "tactile.csv"].map(|name| folder.join(name));
     names.into_iter().find(|path| path.is_file()).ok_or_else(|| {
-        FileError::new(
-            folder,
-            "has no tactile.npy or tactile.csv; give the file of the pressures with --tactile",
-        )
+        FileError::new(folder, "has no tactile.npy or tactile.csv; give the file of pressures with --tactile")
     })
 }
 

@@ -48,32 +48,32 @@ pub fn section(scenes: &[Value]) -> Markup {
         serde_json::to_string(scenes).expect("plain data can be written as JSON").replace("</", "<\\/");
     html! {
         section.viewer id="viewer" aria-label="Body, touch, map and tree" {
-            noscript { p { "The moving picture needs JavaScript." } }
+            noscript { p { "The viewer needs JavaScript." } }
             div.controls {
                 button.play type="button" { "Play" }
                 label.time { "Time " input type="range" min="0" value="0" step="any"; }
                 output.clock aria-hidden="true" {}
                 label.scenes hidden[scenes.len() < 2] {
-                    "Movement "
+                    "Simulation "
                     select { @for (at, scene) in scenes.iter().enumerate() { option value=(at) { (scene["name"].as_str().unwrap_or_default()) } } }
                 }
                 label.colouring { "Colour " select {} }
                 label.sensor { "Sensor " input type="number" min="0" step="1" placeholder="none"; }
             }
             p.status role="status" { "Point at a sensor, or at a part of a tree." }
-            p.webgl hidden { "This browser draws no WebGL: instead of body and map, the picture shows what each sensor feels over time." }
+            p.webgl hidden { "This browser does not support WebGL. Instead of body and map, the viewer shows what each sensor feels over time." }
             div.panels {
                 div.panel.body {
                     h3 { "Body" }
-                    canvas tabindex="0" role="img" aria-label="The body in three dimensions. Arrow keys turn it, plus and minus bring it nearer." {}
+                    canvas tabindex="0" role="img" aria-label="The body in three dimensions. Arrow keys rotate it, plus and minus zoom." {}
                 }
                 div.panel.raster {
                     h3 { "Touch over time" }
-                    canvas tabindex="0" role="img" aria-label="A row is a sensor, ordered by part, a column a time. Arrow keys choose a sensor and a time." {}
+                    canvas tabindex="0" role="img" aria-label="Each row is a sensor, ordered by part, and each column a point in time. Arrow keys choose a sensor and a time." {}
                 }
                 div.panel.map {
                     h3 { "Body map" }
-                    canvas tabindex="0" role="img" aria-label="The map of the sensors in three dimensions. Arrow keys turn it, plus and minus bring it nearer." {}
+                    canvas tabindex="0" role="img" aria-label="The body map in three dimensions. Arrow keys rotate it, plus and minus zoom." {}
                 }
                 div.panel.trees {}
             }

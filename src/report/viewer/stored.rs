@@ -40,13 +40,13 @@ pub fn read(folder: &Path) -> Result<Vec<Value>, FileError> {
     let read = |name: String| {
         let path = folder.join(name);
         let wrong =
-            |what: String| FileError::new(&path, format!("is no scene: {what}; run the experiment again"));
+            |what: String| FileError::new(&path, format!("is not a scene: {what}; run the experiment again"));
         let scene: Value =
             serde_json::from_str(&read_text(&path)?).map_err(|error| wrong(error.to_string()))?;
         if scene["frames"].is_u64() {
             Ok(scene)
         } else {
-            Err(wrong("it does not say of how many frames".to_owned()))
+            Err(wrong("it lacks the number of frames".to_owned()))
         }
     };
     names(folder).into_iter().map(read).collect()

@@ -336,7 +336,7 @@ class Viewer {
       ramp.className = "ramp";
       ramp.style.background = `linear-gradient(to right, ${RAMP.map(css).join(", ")})`;
       const unit = scene.body ? " Pa" : "";
-      box.replaceChildren("Pressure, by its root: 0 ", ramp, ` ${Number(scene.touch.greatest.toPrecision(2))}${unit} and more`);
+      box.replaceChildren("Pressure (square-root scale): 0 ", ramp, ` ${Number(scene.touch.greatest.toPrecision(2))}${unit} or more`);
       return;
     }
     const colours = [...this.partColours[colouring]].sort((a, b) => a[0] - b[0]);

@@ -29,7 +29,7 @@ pub struct ClassicalScaling {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum MapError {
     /// All distances are 0.
-    #[error("the {0} sensors are all at distance 0 from each other, so that there is nothing to map")]
+    #[error("the {0} sensors are all at distance 0 from each other; there is nothing to map")]
     NoDifference(usize),
     /// More dimensions than the distances span.
     #[error(
@@ -46,7 +46,7 @@ pub enum MapError {
     },
     /// Distances whose squares overflow or underflow.
     #[error(
-        "the largest distance is {0:e}, which is beyond what can be computed with; rescale the distances"
+        "the largest distance is {0:e}, which is too large or too small for floating-point arithmetic; rescale the distances"
     )]
     Scale(f64),
     /// The eigen-decomposition failed.

@@ -1,7 +1,7 @@
 //! `tree`: how the parts are joined, from what they feel of their joints (an extension; not in the paper).
 //!
 //! In: [`Tactile`](super::sense::Tactile) pressures of M sensors at T times, and the part of each sensor. Out: a
-//! [`CoMotion`], a tree over the parts with a confidence for each edge. `docs/co-motion.md` has the theory. What a part feels
+//! [`CoMotion`], a tree over the parts with a confidence for each edge. `docs/estimate.md` has the theory. What a part feels
 //! of its motion also says [which sensors are on one part](rigid_parts()).
 //!
 //! A joint belongs to both of its parts, so that both know its speed: |v + ω × l|, from the velocity v, the rate ω and the

@@ -10,7 +10,7 @@ use super::augmented::Augmented;
 
 /// A matrix that is positive definite in exact arithmetic, but not in floating point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-#[error("a matrix that is positive definite is not so after rounding")]
+#[error("a positive definite matrix is no longer so after rounding")]
 pub struct Rounding;
 
 /// A multivariate Gaussian N(μ, Σ), kept by a root of its precision: |P x − P μ|² is all that its density

@@ -29,7 +29,7 @@ pub enum InferenceError {
     },
     /// Draws too large for the memory.
     #[error(
-        "{draws} draws of {points} points are more than 1 billion labels; keep fewer (schema.chains, schema.sweeps, \
+        "{draws} posterior samples of {points} points are more than 1 billion labels; keep fewer (schema.chains, schema.sweeps, \
          schema.keep)"
     )]
     TooManyLabels {
@@ -40,12 +40,14 @@ pub enum InferenceError {
     },
     /// A matrix that is positive definite in exact arithmetic, but not in floating point.
     #[error(
-        "a component is so flat that rounding leaves nothing of it; raise schema.scale, schema.extra_freedom or \
+        "the covariance of a component is numerically singular; raise schema.scale, schema.extra_freedom or \
          schema.mean_weight, or use fewer dimensions"
     )]
     Rounding,
     /// Coordinates whose squares overflow or underflow.
-    #[error("the points spread over {0:e}, which is beyond what can be computed with; rescale them")]
+    #[error(
+        "the points spread over {0:e}, which is too large or too small for floating-point arithmetic; rescale them"
+    )]
     Scale(f64),
     /// The points span fewer than d dimensions.
     #[error(

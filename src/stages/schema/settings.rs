@@ -92,12 +92,12 @@ pub enum Sampler {
 }
 
 impl Sampler {
-    /// The reading in words, as a headline has it.
+    /// The interpretation of the paper in words, as a headline has it.
     pub fn in_words(self) -> &'static str {
         match self {
-            Self::Equations => "as the equations say",
-            Self::AuthorsCode => "as the authors' code computes",
-            Self::SplitMerge => "by the split-merge sampler",
+            Self::Equations => "equations interpretation",
+            Self::AuthorsCode => "authors' code interpretation",
+            Self::SplitMerge => "split-merge sampler",
         }
     }
 }
@@ -187,7 +187,7 @@ impl Schema {
             "schema.chains * (schema.sweeps - schema.burn_in)",
             draws,
             draws <= 1_000_000 && draws * sensors <= MAX_LABELS,
-            "at most 1000000 draws where all are kept, and at most 1000000000 labels with all sensors",
+            "at most 1000000 samples where all are kept, and at most 1000000000 labels with all sensors",
         )
     }
 }

@@ -48,9 +48,9 @@ impl Resolution {
     /// Whether the step resolves `what`, and how well, in words.
     pub fn in_words(&self, what: &str) -> String {
         format!(
-            "the physics step {} {what}: anchors come apart by at most {:.2} mm, a part turns by at most {:.3} of a turn \
+            "the time step {} {what}: joint anchors separate by at most {:.2} mm, and a part rotates by at most {:.3} revolutions \
              in a step (limits: {:.0} mm and {})",
-            if self.is_resolved() { "resolves" } else { "does not resolve" },
+            if self.is_resolved() { "resolves" } else { "is too long for" },
             1e3 * self.anchor_separation,
             self.turn,
             1e3 * Self::SEPARATION,

@@ -72,7 +72,7 @@ impl Motion {
         gain("motion.damping", self.damping)?;
         moderate("motion.servo_gain", self.servo_gain)?;
         let torque = self.servo_torque;
-        let range = "0.000001 to 1000000: a servo without torque moves nothing";
+        let range = "0.000001 to 1000000 (a servo without torque moves nothing)";
         check("motion.servo_torque", torque, (1e-6..=1e6).contains(&torque), range)
     }
 }

@@ -87,9 +87,9 @@ fn joints_that_a_body_has_not_are_refused() {
     let near = |by: f64| Turn::Hinge { anchor: Column::new(1.0, 2.0, 3.0 + by), axis: Column::from(Y) };
     assert!(turned(&[hinge(X), near(9e-7)]).is_ok());
     let message = turned(&[hinge(X), near(1.1e-6)]).unwrap_err();
-    assert!(message.starts_with("link `b`: it turns about 2 places on its parent; give"), "{message}");
+    assert!(message.starts_with("link `b`: it rotates about 2 points of its parent; give"), "{message}");
     let message = turned(&[Turn::Other("slide")]).unwrap_err();
-    assert_eq!(message, "link `b`: its joint is `slide`, which a body has not; make it a hinge, or fix it");
+    assert_eq!(message, "link `b`: its joint is `slide`, which is not supported; make it a hinge, or fix it");
 }
 
 #[test]
@@ -151,7 +151,7 @@ fn links_without_shape_go_to_what_they_are_on() {
     let links = [&links[..3], &[link("c", Some(1), &[hinge(Z)], 1)]].concat();
     let message = joined("link", &links).unwrap_err();
     assert!(
-        message.starts_with("link `v` has no shape, but `b` and `c` turn on it; give it a shape"),
+        message.starts_with("link `v` has no shape, but `b` and `c` rotate on it; give it a shape"),
         "{message}"
     );
 }
@@ -171,12 +171,12 @@ fn the_root_is_the_first_that_has_a_shape() {
     let (parts, notes) = joined("body", &links).unwrap();
     assert_eq!(
         (parts[0].joint, &notes[..]),
-        (None, &["body `a` is the root: its joints with the world are left out".to_owned()][..])
+        (None, &["body `a` is the root: its joints with the world are ignored".to_owned()][..])
     );
     let links =
         [link("world", None, &[], 0), link("a", Some(0), &[hinge(X)], 1), link("b", Some(0), &[hinge(X)], 1)];
     let message = joined("link", &links).unwrap_err();
-    assert!(message.starts_with("link `world` has no shape, but `a` and `b` turn on it"), "{message}");
+    assert!(message.starts_with("link `world` has no shape, but `a` and `b` rotate on it"), "{message}");
 }
 
 #[test]
@@ -188,7 +188,7 @@ fn there_is_one_body() {
         link("c", Some(2), &[hinge(X)], 1),
     ];
     let message = joined("body", &links).unwrap_err();
-    assert_eq!(message, "`a` and `b` are two bodies that nothing joins; keep one");
+    assert_eq!(message, "`a` and `b` are two bodies without a joint between them; keep one");
     let message = joined("body", &[link("a", None, &[], 0)]).unwrap_err();
     assert_eq!(message, "no body has a shape; give it a box, sphere, cylinder or capsule");
 }

@@ -32,7 +32,9 @@ impl<'a> Defaults<'a> {
         for (key, sound) in [("angle", &["degree", "radian"][..]), ("coordinate", &["local"])] {
             if let Some(value) = setting(key).filter(|value| !sound.contains(value)) {
                 let sound = sound.join(" or ");
-                return Err(format!("compiler has {key} `{value}`, which is not read; it must be {sound}"));
+                return Err(format!(
+                    "compiler has {key} `{value}`, which is not supported; it must be {sound}"
+                ));
             }
         }
         let euler = setting("eulerseq").unwrap_or("xyz");
@@ -75,7 +77,7 @@ impl<'a> Defaults<'a> {
         let class = node.attribute("class").or(surroundings);
         let own = match class.filter(|&class| class != "main") {
             Some(class) => Some(*self.classes.get(class).ok_or_else(|| {
-                element.wrong(format!("has class `{class}`, which no default has; add one or leave it out"))
+                element.wrong(format!("has class `{class}`, which no default has; add one or remove it"))
             })?),
             None => None,
         };

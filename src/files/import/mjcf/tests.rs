@@ -212,15 +212,15 @@ fn every_mistake_is_named_with_its_line_and_body() {
         ("<body name='a'><inertial/></body>", "inertial of body `a` lacks mass"),
         (
             "<body name='a'><include file='b.xml'/></body>",
-            "include is not read; put the content of that file",
+            "include is not supported; insert the content of that file",
         ),
-        ("<body name='a'><replicate count='3'/></body>", "replicate of body `a` is not read; write out"),
+        ("<body name='a'><replicate count='3'/></body>", "replicate of body `a` is not supported; write out"),
     ] {
         let message = world("", bodies).unwrap_err();
         assert!(message.contains(expected), "{bodies:?} gave {message:?}");
     }
     for (sections, expected) in [
-        ("<include file='b.xml'/>", "line 1: include is not read"),
+        ("<include file='b.xml'/>", "line 1: include is not supported"),
         ("<compiler angle='turn'/>", "compiler has angle `turn`"),
         ("<compiler coordinate='global'/>", "compiler has coordinate `global`"),
         ("<compiler eulerseq='xy'/>", "compiler has eulerseq `xy`"),
@@ -237,18 +237,18 @@ fn what_a_tree_has_not_or_nobody_knows_is_refused() {
     let pair = "<body name='a'><geom size='0.1'/><body name='b'><joint/><geom size='0.1'/></body></body>";
     for tie in ["<weld body1='a' body2='b'/>", "<connect body1='a' body2='b' anchor='0 0 0'/>"] {
         let tied = world(&format!("<equality>{tie}</equality>"), pair);
-        assert!(tied.unwrap_err().contains("ties bodies together"));
+        assert!(tied.unwrap_err().contains("joins bodies in addition to the tree"));
         let loose = tie.replace("/>", " active='false'/>");
         assert!(world(&format!("<equality>{loose}</equality>"), pair).is_ok());
     }
     assert!(world("<equality><joint joint1='x'/></equality>", pair).is_ok());
     for (inside, expected) in [
-        ("<bodi/>", "bodi of body `a` is not known here"),
-        ("<geom size='0.1'><geom size='0.1'/></geom>", "geom is within an element that holds none"),
+        ("<bodi/>", "bodi of body `a` is unknown here"),
+        ("<geom size='0.1'><geom size='0.1'/></geom>", "geom is within an element that cannot contain it"),
         ("<geom size='0.1' fromto='0 0 0 0 0 1'/>", "has fromto, but is a sphere"),
     ] {
         let message = world("", &format!("<body name='a'>{inside}</body>")).unwrap_err();
         assert!(message.contains(expected), "{message}");
     }
-    assert!(world("", "<a/>").unwrap_err().contains("a is not known here"));
+    assert!(world("", "<a/>").unwrap_err().contains("a is unknown here"));
 }

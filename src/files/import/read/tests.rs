@@ -119,11 +119,11 @@ fn both_kinds_of_file_give_the_same_body() {
 #[test]
 fn what_is_neither_kind_is_refused() {
     for (text, expected) in [
-        ("", "no well-formed XML"),
-        ("<mujoco>", "no well-formed XML"),
-        ("<mujoco></robot>", "no well-formed XML"),
-        ("{\"mujoco\": 1}", "no well-formed XML"),
-        ("<!DOCTYPE a [<!ENTITY b 'c'>]><mujoco>&b;</mujoco>", "no well-formed XML"),
+        ("", "not well-formed XML"),
+        ("<mujoco>", "not well-formed XML"),
+        ("<mujoco></robot>", "not well-formed XML"),
+        ("{\"mujoco\": 1}", "not well-formed XML"),
+        ("<!DOCTYPE a [<!ENTITY b 'c'>]><mujoco>&b;</mujoco>", "not well-formed XML"),
         ("<sdf version='1.7'/>", "its root is <sdf>, but must be <mujoco> (MJCF) or <robot> (URDF)"),
         ("<mujoco/>", "no body has a shape"),
         ("<robot/>", "no link has a shape"),

@@ -125,7 +125,7 @@ fn a_mass_is_spread_over_the_volume_of_a_link() {
 #[test]
 fn links_that_are_no_tree_are_refused() {
     for (text, expected) in [
-        (links_of("a a"), "link `a` is there twice"),
+        (links_of("a a"), "link `a` exists twice"),
         (links_of("a b"), "links `a` and `b` are both roots"),
         (
             links_of("a b c") + &joint("fixed", "b", "c", "") + &joint("fixed", "c", "b", ""),
@@ -135,13 +135,16 @@ fn links_that_are_no_tree_are_refused() {
             links_of("a b") + &joint("fixed", "a", "b", "") + &joint("fixed", "b", "a", ""),
             "link `a` is in a loop",
         ),
-        (links_of("a b") + &joint("fixed", "a", "a", ""), "link `a` is in a loop of joints or on one; leave"),
+        (
+            links_of("a b") + &joint("fixed", "a", "a", ""),
+            "link `a` is in a loop of joints or on one; remove",
+        ),
         (
             links_of("a b c") + &joint("fixed", "a", "c", "") + &joint("fixed", "b", "c", ""),
             "joint `b-c` carries `c`, as another joint does",
         ),
-        (links_of("a") + &joint("fixed", "a", "b", ""), "joint `a-b` has child `b`, which is no link"),
-        (links_of("a") + &joint("fixed", "b", "a", ""), "joint `b-a` has parent `b`, which is no link"),
+        (links_of("a") + &joint("fixed", "a", "b", ""), "joint `a-b` has child `b`, which is not a link"),
+        (links_of("a") + &joint("fixed", "b", "a", ""), "joint `b-a` has parent `b`, which is not a link"),
     ] {
         let message = read(&text).unwrap_err();
         assert!(message.contains(expected), "{text:?} gave {message:?}");
@@ -173,14 +176,14 @@ fn every_mistake_is_named_with_its_line_and_link() {
         (joined("fixed", "<origin rpy='0 0 ${pi}'/>"), "has rpy `0 0 ${pi}`"),
         ("<link name='a'><visual/></link>".to_owned(), "link `a` has a visual without geometry"),
         (shaped(""), "link `a` has a visual without geometry"),
-        (shaped("<cone/>"), "cone of link `a` is not read; make it a box"),
+        (shaped("<cone/>"), "cone of link `a` is not supported; make it a box"),
         (shaped("<sphere/>"), "sphere of link `a` lacks radius"),
         (shaped("<cylinder radius='1'/>"), "cylinder of link `a` lacks length"),
         (shaped("<box/>"), "box of link `a` lacks size"),
         (shaped("<box size='1 1 NaN'/>"), "box of link `a` has size `1 1 NaN`"),
         (
             "<x:macro xmlns:x='http://www.ros.org/wiki/xacro'/>".to_owned(),
-            "macro is of xacro; expand it first",
+            "macro is an element of xacro; expand the file first",
         ),
     ] {
         let message = read(&text).unwrap_err();

@@ -184,7 +184,7 @@ fn a_condition_without_a_sample_is_marked() {
     write_rows(&folder.path().join("fig10a-tree-baseline.csv"), &rows).unwrap();
     render(folder.path()).unwrap();
     let svg = std::fs::read_to_string(folder.path().join("fig10a-tree-baseline.svg")).unwrap();
-    assert!(svg.contains("no eligible draw") && svg.contains("\n0\n"));
+    assert!(svg.contains("no eligible sample") && svg.contains("\n0\n"));
 }
 
 #[test]
@@ -209,7 +209,7 @@ fn a_table_that_cannot_be_rendered_is_named_with_its_mistake() {
     rejects("fig04-agent", "part,kind,x_m,y_m,z_m\n0,sensor,0,0,0\n", "part 0 lacks an end");
     rejects("fig05-angles", "coordination,time_s,joint,angle1_rad,angle2_rad\n0,0,1,4,0\n", "angle 4");
     let parts = "dimension,counting,parts,count,n,mean,low,high\n";
-    rejects("fig07-parts", &format!("{parts}2,best-draw,5,1,1,5,,\n"), "no row that counts all draws");
+    rejects("fig07-parts", &format!("{parts}2,best-draw,5,1,1,5,,\n"), "no row that counts all samples");
     let many: String = (0..100).map(|d| format!("{d},all-draws,5,1,1,5,,\n")).collect();
     rejects("fig07-parts", &format!("{parts}{many}"), "100 different values of d");
     let curve =

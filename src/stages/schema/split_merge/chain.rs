@@ -5,7 +5,7 @@
 //! p(z, μ, Σ, x) ∝ γ^K ∏_k Γ(n_k) NIW(μ_k, Σ_k) ∏_{i in k} N(x_i; μ_k, Σ_k) × (1 / K^(K−2)) Σ_C ∏_{(s, c) in C} N(μ_s; μ_c, Σ_s + Σ_c),
 //!
 //! the Dirichlet-process mixture itself, not truncated at K components, and a uniform prior over the trees C of its
-//! clusters. Without joints (DPGMM) the last factor is missing. See `docs/split-merge.md`.
+//! clusters. Without joints (DPGMM) the last factor is missing. See `docs/method.md`.
 
 use rand::seq::IndexedRandom;
 use rand::seq::index::sample_array;
