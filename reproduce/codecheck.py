@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Rerun experiments, multiverse and article, and compare with the committed results: codecheck.py [--only NAMES] [--compare-only]
 
-The parts, their commands, files and tolerances are in codecheck.toml. codecheck.sh calls this in a fresh clone. Status: 0 every
-file is the same or within its tolerance, 1 one is not, 2 on an error. Needs Python 3.11, and no packages.
+The parts, their commands, files and tolerances are in codecheck.toml. A part that is `on_request` runs only if --only names it.
+codecheck.sh calls this in a fresh clone. Status: 0 every file is the same or within its tolerance, 1 one is not, 2 on an
+error. Needs Python 3.11, and no packages.
 """
 
 import argparse
@@ -23,19 +24,24 @@ SAME, WITHIN, AGREES, DRAWN, DIFFERS = "same bytes", "within tolerance", "agrees
 
 def main():
     rules = tomllib.loads((ROOT / "reproduce" / "codecheck.toml").read_text())
-    names = [part["name"] for part in rules["part"]]
+    parts = {part["name"]: part for part in rules["part"]}
+    usual = [name for name, part in parts.items() if not part.get("on_request")]
     parser = argparse.ArgumentParser(description="Rerun experiments, multiverse and article, and compare with the committed results.")
-    parser.add_argument("--only", metavar="NAMES", help=f"parts to check, with commas between them: {', '.join(names)}")
+    choice = f"parts to check, with commas between them: {', '.join(parts)} (without --only: {', '.join(usual)})"
+    parser.add_argument("--only", metavar="NAMES", help=choice)
     parser.add_argument("--compare-only", action="store_true", help="compare what earlier runs have left in results/")
     options = parser.parse_args()
-    chosen = options.only.split(",") if options.only else names
+    chosen = options.only.split(",") if options.only else usual
     for name in chosen:
-        if name not in names:
-            fail(f"there is no part {name!r}; the parts are {', '.join(names)}")
+        if name not in parts:
+            fail(f"there is no part {name!r}; the parts are {', '.join(parts)}")
+    if not options.compare_only:
+        minutes = rules["build_minutes"] + sum(parts[name]["minutes"] for name in chosen)
+        print(f"all of it: about {minutes} min on two cores, with the build", flush=True)
     found = []
-    for part in rules["part"]:
-        if part["name"] in chosen:
-            found += check(part, rules, options.compare_only)
+    for name, part in parts.items():
+        if name in chosen:
+            found += check(part, parts, rules, options.compare_only)
     counts = {outcome: sum(outcome == one for one in found) for outcome in [SAME, WITHIN, AGREES, DRAWN, DIFFERS]}
     print(", ".join(f"{count} {outcome}" for outcome, count in counts.items()))
     sys.exit(1 if counts[DIFFERS] else 0)
@@ -46,8 +52,12 @@ def fail(message):
     sys.exit(2)
 
 
-def check(part, rules, compare_only):
+def check(part, parts, rules, compare_only):
     """Outcomes of all files of a part, each with a line."""
+    compared = [alike(part, parts[name]) for name in part["like"]] if "like" in part else [part]
+    for folder in [ROOT / one.get("committed", ".") for one in compared]:
+        if not folder.is_dir():
+            fail(f"{folder} is missing: there is nothing to compare {part['name']} with")
     if not compare_only:
         print(f"{part['name']}: {' '.join(part['command'])}, about {part['minutes']} min on two cores: {part['says']}", flush=True)
         status = subprocess.run(part["command"], cwd=ROOT).returncode
@@ -60,6 +70,20 @@ def check(part, rules, compare_only):
     for file in part.get("compares_itself", []):
         if own:
             found.append(tell(file, own, "as its command says"))
+    for one in compared:
+        found += compare_files(one, rules)
+    return found
+
+
+def alike(part, other):
+    """The files of another part, where this one has them: in a folder of that part's name."""
+    places = {place: f"{part[place]}/{other['name']}" for place in ["made", "committed"]}
+    return other | places | {"name": f"{part['name']}/{other['name']}"}
+
+
+def compare_files(part, rules):
+    """Outcomes of the tables and pictures of a part, each with a line."""
+    found = []
     made, committed = (ROOT / part.get(folder, ".") for folder in ["made", "committed"])
     same_kind = witnessed(made, committed, part)
     for table in part.get("table", []) + part.get("picture", []):

@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # Checks this repository as a stranger would: clones what is committed into a folder (--into FOLDER, by default a new one under
-# /tmp), reruns both experiments, the multiverse and the article, and compares with the committed results, by the tolerances of
-# codecheck.toml. --only NAMES checks some parts (such as --only exp1,article). In a folder that has the clone already, it goes
-# on. Status: 0 all agrees, 1 something does not, 2 on an error.
+# /tmp), reruns both experiments, the multiverse and the article, and compares with the committed results. Tolerances and minutes
+# are in codecheck.toml. --only NAMES checks some parts (such as --only exp1,article), and is the only way to the registered
+# confirmation (--only confirm). In a folder that has the clone already, it goes on. Status: 0 all agrees, 1 something does not,
+# 2 on an error.
 set -euo pipefail
 root=$(CDPATH= cd -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")/.." && pwd)
 

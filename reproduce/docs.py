@@ -1,16 +1,14 @@
 #!/usr/bin/env python3
 """Put the results of finished runs into the repository: reproduce/docs.py [RESULTS]
 
-RESULTS is the folder that holds exp1, exp2, search, sensitivity, ablation, step, momentum, multiverse, multiverse-held-out, mixing and
-bodies (default: results/). It updates
+RESULTS is the folder that holds confirm, exp1, exp2, search, sensitivity, ablation, step, momentum, multiverse, multiverse-held-out,
+mixing and bodies (default: results/). It updates
 
-- README.md: the table between <!-- claims --> and <!-- /claims -->, from claims.csv of both experiments;
-- docs/results.md: the tables of both experiments, from their claims.md;
-- docs/shown/: claims, tables and pictures of both experiments, and those of the studies;
-- docs/sensitivity.md, ablation.md, step.md, momentum.md, multiverse.md, mixing.md and bodies.md: the pages of the studies;
-- DEVIATIONS.md: the table of open settings, from paper.toml, sensitivity.toml and the search that is
-  shown. It needs no run;
-- docs/claims.md: the paper's sentences, claims and verdicts, from claims.toml and docs/shown. It needs no run;
+- docs/shown/: for each run and study its tables, its pictures, and its page as README.md; for confirm and the two experiments also
+  their manifests;
+- README.md and docs/results.md: what lies between <!-- NAME --> and <!-- /NAME -->, from docs/shown. It needs no run;
+- docs/settings.md: the table of open settings, from paper.toml, sensitivity.toml and the search that is shown. It needs no run;
+- docs/shown/claims.md: the paper's sentences, claims and verdicts, from claims.toml and docs/shown. It needs no run;
 - article/values.toml: the numbers of the article, from docs/shown. It needs no run.
 
 What RESULTS does not hold is skipped, with a line on standard error. Needs Python 3.11, and no packages.
@@ -29,30 +27,39 @@ import tomllib
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 SHOWN = ROOT / "docs" / "shown"
 
-# The claims that the README shows: what the abstract of the paper rests on.
+# The claims that the README shows beside the headline: what the abstract of the paper rests on, and what a reader would ask next.
 CLAIMS = [
-    ("exp1", "tree-accuracy"),
-    ("exp1", "baseline-tree"),
-    ("exp2", "best-coordination"),
-    ("exp2", "tree-random-movement"),
+    ("exp1", "baseline-tree", "DPGMM + Prim (no latent joints) never recovers the tree"),
+    ("exp1", "first-dimension", "The tree needs about nine dimensions"),
+    ("exp1", "tree-high-dimensions", "The tree is recovered at each d from 9 (worst d)"),
+    ("exp1", "number-of-parts", "Parts found are slightly above five (worst d)"),
+    ("exp2", "best-coordination", "p = 0.9 is best"),
+    ("exp2", "tree-random-movement", "At p up to 0.4 the tree is not recovered (worst p)"),
 ]
-# Stands for the headline of the other reading.
-OTHER = "other-reading"
+HEADLINE = "tree-accuracy"
+FIGURES = {
+    "exp1": ["fig07-parts", "fig08a-ari-baselines", "fig08b-ari", "fig10a-tree-baseline", "fig10b-tree"],
+    "exp2": ["fig11a-ari", "fig11b-tree"],
+}
 VERDICTS = ["reproduced", "not reproduced", "not testable"]
-UNITS = ["kg/m^3", "N m s/rad", "N m/rad", "m", "s"]
+UNITS = ["kg/m^3", "N m s/rad", "N m/rad", "N m", "1/s", "Pa", "m", "s"]
+# Settings of which docs/fluid.md gives the reason.
+FLUID = ["physics.fluid_density", "physics.angular_momentum", "sense.threshold"]
 
 
 def main():
     results = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "results"
+    experiments = [experiment_1, experiment_2, confirmation_1, confirmation_2]
     studies = [search, sensitivity, ablation, shorter_step, momentum, multiverse, held_out, mixing, bodies]
-    for step in [claims, experiment_1, experiment_2, *studies]:
+    for step in [*experiments, *studies]:
         try:
             step(results)
         except FileNotFoundError as missing:
             skip(step, f"{missing.filename} is missing")
         except Skip as reason:
             skip(step, str(reason))
-    deviations()
+    answers()
+    open_settings()
     for script in ["reproduce/claims.py", "article/values.py"]:
         if status := subprocess.run([sys.executable, ROOT / script]).returncode:
             sys.exit(status)
@@ -95,72 +102,165 @@ def manifest(folder):
 # ---- The experiments
 
 
-def claims(results):
-    """README.md: five claims, the headline by both readings, and how many of all are reproduced."""
-    experiments = {name: read_claims(results / name) for name in ["exp1", "exp2"]}
-    other = {name: claims.pop(OTHER, None) for name, claims in experiments.items()}
-    del other["exp2"]  # the same bodies at the same p and d as in experiment 1
-    columns = ["verdict", "claim", "published", "reproduced", "95 % interval", "n", "accepted"]
-    lines = [row(columns), f"|{'---|' * len(columns)}"]
-    for name, id in CLAIMS:
-        for claim in [experiments[name][id], other.pop(name, None)]:
-            if claim:
-                lines.append(row([f"**{claim['verdict']}**"] + [claim[column] for column in columns[1:]]))
-    # A claim of both experiments counts once.
-    verdicts = [claim["verdict"] for claim in (experiments["exp1"] | experiments["exp2"]).values()]
-    counts = ", ".join(f"{verdicts.count(verdict)} {verdict}" for verdict in VERDICTS)
-    lines += ["", f"All {len(verdicts)} claims: {counts}. {source(results)}"]
-    between_marks(ROOT / "README.md", "claims", "\n".join(lines))
-
-
-def row(cells):
-    return f"| {' | '.join(cells)} |"
-
-
-def read_claims(folder):
-    """The cells of claims.md by the claim's id, without the rows of the extension; the other reading's headline is OTHER."""
-    table = [line.strip("| ").split(" | ") for line in (folder / "claims.md").read_text().splitlines() if "|" in line[:1]]
-    header, rows = table[0], table[2:]
-    with open(folder / "claims.csv", newline="") as file:
-        claims = list(csv.DictReader(file))
-    assert len(claims) == len(rows), f"{folder}: claims.csv and claims.md do not agree"
-    reading = claims[0].get("reading")
-    return {
-        claim["id"] if claim.get("reading") == reading else OTHER: dict(zip(header, row))
-        for claim, row in zip(claims, rows)
-        if claim["counting"] == "all-draws"
-    }
-
-
-def source(results):
-    """Commands, seed and size of the runs, in a sentence or two."""
-    runs = {}
-    for name in ["exp1", "exp2"]:
-        facts = manifest(results / name)
-        experiment, schema = facts["settings"]["experiment"], facts["settings"]["schema"]
-        size = (
-            f"seed {facts['seed']}, {experiment['simulations']} simulations, {schema['chains']} chains of "
-            f"{schema['sweeps']} sweeps for each condition, revision {facts['revision'][:7]}"
-        )
-        runs.setdefault(size, []).append(f"`reproduce/{name}.sh`")
-    return " ".join(f"Made by {' and '.join(commands)}: {size}." for size, commands in runs.items())
-
-
 def experiment_1(results):
-    experiment(results / "exp1", ["fig07-parts", "fig08a-ari-baselines", "fig08b-ari", "fig10a-tree-baseline", "fig10b-tree"])
+    experiment(results / "exp1", SHOWN / "exp1")
 
 
 def experiment_2(results):
-    experiment(results / "exp2", ["fig11a-ari", "fig11b-tree"])
+    experiment(results / "exp2", SHOWN / "exp2")
 
 
-def experiment(folder, figures):
-    """docs/results.md: all claims of an experiment; and its figures, each a table and a picture."""
+def confirmation_1(results):
+    experiment(results / "confirm" / "exp1", SHOWN / "confirm" / "exp1")
+    copy([results / "confirm" / "confirmation.md"], SHOWN / "confirm")
+
+
+def confirmation_2(results):
+    experiment(results / "confirm" / "exp2", SHOWN / "confirm" / "exp2")
+
+
+def experiment(folder, shown):
+    """The claims and figures of an experiment, and its page."""
     manifest(folder)
-    table = (folder / "claims.md").read_text().strip()
-    pairs = [folder / "figures" / f"{name}.{kind}" for name in figures for kind in ["csv", "svg"]]
-    copy([folder / "claims.csv", folder / "manifest.json", *pairs], SHOWN / folder.name)
-    between_marks(ROOT / "docs" / "results.md", folder.name, table)
+    pairs = [folder / "figures" / f"{name}.{kind}" for name in FIGURES[folder.name] for kind in ["csv", "svg"]]
+    copy([folder / "claims.csv", folder / "manifest.json", *pairs], shown)
+    title = {"exp1": "Experiment 1: over the dimensions d of the body map", "exp2": "Experiment 2: over the ratio p of motor coordination"}
+    (shown / "README.md").write_text(f"# {title[folder.name]}\n\n{(folder / 'claims.md').read_text()}")
+
+
+def answers():
+    """README.md and docs/results.md: the headline in a sentence, and claims of the confirmation beside those of the run before it."""
+    runs = {name: shown_claims(name) for name in ["exp1", "exp2"]}
+    latest, of = runs["exp1"][0], {name: {run["name"]: run for run in found} for name, found in runs.items()}
+    headline = latest["claims"][HEADLINE, "equations"]
+    sentence = (
+        f"In {words(headline)} of {int(headline['n']):,} eligible samples, DPGMM-LJ recovers the true tree at p = 0.9 and d = 14; the paper "
+        f"reports {headline['wording']}. The 95 % interval over {headline['simulations']} simulations is {interval(headline)}, and the range "
+        f"accepted beforehand is {span(headline, 'accepted_low', 'accepted_high')}: **{headline['verdict']}**."
+    )
+    between_marks(ROOT / "README.md", "headline", sentence)
+
+    lines = [table_row(["claim of the paper", "published", "found here", "95 % interval", "n", "verdict"]), "|---|---|---|---|---|---|"]
+    others = [
+        ("exp1", HEADLINE, "Tree accuracy at p = 0.9, d = 14", "equations"),
+        ("exp1", HEADLINE, "The same, as the authors' code computes", "authors-code"),
+        *((*claim, "equations") for claim in CLAIMS),
+    ]
+    for experiment, id, name, reading in others:
+        run = runs[experiment][0]
+        row = run["claims"][id, reading]
+        if run["name"] != latest["name"]:
+            name += f" ({run['name']})"
+        lines.append(table_row([name, row["wording"], words(row), interval(row), f"{int(row['n']):,}", row["verdict"]]))
+    lines += ["", " ".join(sources(runs))]
+    # A claim of both experiments counts once.
+    verdicts = [row["verdict"] for (_, reading), row in (runs["exp2"][0]["claims"] | latest["claims"]).items() if reading == "equations"]
+    counts = ", ".join(f"{verdicts.count(verdict)} {verdict}" for verdict in VERDICTS)
+    lines[-1] = f"Of all {len(verdicts)} claims: {counts}. {' '.join(sources(runs, brief=True))}"
+    between_marks(ROOT / "README.md", "claims", "\n".join(lines))
+
+    names = list(dict.fromkeys(run["name"] for found in runs.values() for run in found))
+    header = ["claim", "published", "accepted", *(f"{name}: {what}" for name in names for what in ["found", "verdict"])]
+    lines = [table_row(header), f"|{'---|' * len(header)}"]
+    listed = set()
+    for experiment, found in runs.items():
+        for (id, reading), row in found[0]["claims"].items():
+            if row["verdict"] == "not testable" or (id, reading) in listed:
+                continue
+            listed.add((id, reading))
+            statement = row["statement"] + (", as the authors' code computes" if reading == "authors-code" else "")
+            cells = [statement, row["wording"], span(row, "accepted_low", "accepted_high")]
+            for name in names:
+                same = of[experiment].get(name, {}).get("claims", {}).get((id, reading))
+                cells += [f"{words(same)}{f' ({interval(same)})' if interval(same) else ''}", same["verdict"]] if same else ["–", "not run"]
+            lines.append(table_row(cells))
+    lines += ["", " ".join(sources(runs))]
+    between_marks(ROOT / "docs" / "results.md", "claims", "\n".join(lines))
+
+
+    conclusion = SHOWN / "confirm" / "confirmation.md"
+    text = conclusion.read_text().strip() if conclusion.exists() else "The confirmation has not run yet."
+    between_marks(ROOT / "docs" / "results.md", "confirmation", text)
+    curves = []
+    for experiment, figure, symbol, column in [("exp1", "fig10b-tree", "d", "dimension"), ("exp2", "fig11b-tree", "p", "coordination")]:
+        run = runs[experiment][0]
+        with open(run["folder"] / f"{figure}.csv", newline="") as file:
+            rows = [row for row in csv.DictReader(file) if row["counting"] == "all-draws"]
+        header = [symbol, f"tree accuracy of DPGMM-LJ ({run['name']})", "95 % interval", "n", "range over simulations"]
+        curves += [table_row(header), f"|{'---|' * len(header)}"]
+        for row in rows:
+            rate = row | {"unit": "rate"}
+            cells = [row[column], words(rate), interval(rate), f"{int(row['n']):,}", span(rate, "lowest", "highest")]
+            curves.append(table_row(cells))
+        curves.append("")
+    between_marks(ROOT / "docs" / "results.md", "findings", "\n".join(curves).strip() + "\n")
+
+
+def shown_claims(experiment):
+    """What docs/shown has of an experiment: the confirmation first, if it has run, then the run before it."""
+    published = tomllib.loads((ROOT / "reproduce" / "published.toml").read_text())["claim"]
+    statements = {claim["id"]: claim["statement"] for claim in published}
+    runs = []
+    for name, folder in [("confirmation", SHOWN / "confirm" / experiment), ("seed 1414", SHOWN / experiment)]:
+        if not (folder / "claims.csv").exists():
+            continue
+        with open(folder / "claims.csv", newline="") as file:
+            rows = [row for row in csv.DictReader(file) if row["counting"] == "all-draws"]
+        claims = {(row["id"], row["reading"]): row | {"statement": statements[row["id"]]} for row in rows}
+        runs.append({"name": name, "claims": claims, "facts": manifest(folder), "folder": folder})
+    return runs
+
+
+def sources(runs, brief=False):
+    """Command, seed, size and revision of each run that is shown, a sentence each; if brief, of each experiment the first run alone."""
+    made = {}
+    for experiment, found in runs.items():
+        for run in found[:1] if brief else found:
+            facts = run["facts"]
+            settings, schema = facts["settings"]["experiment"], facts["settings"]["schema"]
+            chains = f"{schema['chains']} chains of {schema['sweeps']} sweeps for each condition, "
+            size = (
+                f"seed {facts['seed']}, {settings['simulations']} simulations, {'' if brief else chains}revision {facts['revision'][:7]}"
+            )
+            command = "confirm.sh" if run["name"] == "confirmation" else f"{experiment}.sh"
+            made.setdefault((run["name"], size), []).append(command)
+    return [
+        f"{'' if name.startswith('seed') else 'Confirmation, '}{', '.join(f'`reproduce/{command}`' for command in dict.fromkeys(commands))}: {size}."
+        for (name, size), commands in made.items()
+    ]
+
+
+def words(row):
+    """The value of a claim for people, as the program writes it."""
+    return number(row["value"], row["unit"], sign=True)
+
+
+def interval(row):
+    return span(row, "low", "high")
+
+
+def span(row, low, high):
+    """A range of a claim for people; one number if both ends are equal, and nothing where there is none."""
+    if not row[low]:
+        return ""
+    unit = "" if row["unit"] == "p-value" else row["unit"]
+    ends = [number(row[key], unit) for key in [low, high]]
+    return (ends[0] if ends[0] == ends[1] else " to ".join(ends)) + (" %" if row["unit"] == "rate" else "")
+
+
+def number(text, unit, sign=False):
+    if not text:
+        return "–"
+    value = float(text)
+    if unit == "p-value" and value < 0.001:
+        return "< 0.001"
+    if unit == "rate":
+        return (f"{100 * value:.0f}" if value in (0, 1) else f"{100 * value:.1f}") + (" %" if sign else "")
+    return f"{round(value, 3) + 0.0:g}"
+
+
+def table_row(cells):
+    return f"| {' | '.join(cells)} |"
 
 
 # ---- The studies
@@ -196,23 +296,23 @@ def multiverse(results):
     tables = ["multiverse.csv", "specifications.csv", "shares.csv", "variance.csv", "joint.csv"]
     study(results / "multiverse", "multiverse.md", tables)
     # Over a megabyte, and nearly all of it again and again the same.
-    page = ROOT / "docs" / "multiverse.md"
+    page = SHOWN / "multiverse" / "README.md"
     for table in tables[:2]:
         plain = SHOWN / "multiverse" / table
         plain.with_name(f"{table}.gz").write_bytes(gzip.compress(plain.read_bytes(), mtime=0))
         plain.unlink()
-        page.write_text(page.read_text().replace(f"/{table})", f"/{table}.gz)"))
+        page.write_text(page.read_text().replace(f"]({table})", f"]({table}.gz)"))
 
 
 def held_out(results):
-    """The section of docs/multiverse.md on the multiverse of another seed."""
+    """The section of the multiverse's page on the multiverse of another seed."""
     manifest(results / "multiverse-held-out")
     own, other = (read_shares(results / name) for name in ["multiverse", "multiverse-held-out"])
     rows = [
         "## Another seed\n",
         "The same design with other bodies, movements and specifications (`reproduce/multiverse-held-out.sh`): all "
         f"{other['all', 'tree-accuracy']['n']} of them. Within: whether that share lies in the interval of the large "
-        "multiverse. [Its shares](shown/multiverse-held-out/shares.csv).\n",
+        "multiverse. [Its shares](../multiverse-held-out/shares.csv).\n",
         "| claim | share | of the other seed | within |",
         "|---|---|---|---|",
     ]
@@ -226,7 +326,7 @@ def held_out(results):
     count = len(rows) - 4
     rows.append(f"\n{within} of {count} shares lie within.\n")
     copy([results / "multiverse-held-out" / "shares.csv"], SHOWN / "multiverse-held-out")
-    page = ROOT / "docs" / "multiverse.md"
+    page = SHOWN / "multiverse" / "README.md"
     text = re.sub(r"## Another seed\n.*?(?=## The choices\n)", "", page.read_text(), flags=re.S)
     before, choices = text.split("## The choices\n")
     section = "\n".join(rows)
@@ -253,34 +353,26 @@ def mixing(results):
 
 
 def study(folder, page, tables):
-    """Put the page of a study into docs/, and its tables and pictures into docs/shown/."""
+    """Put the tables, the pictures and the page of a study into its folder of docs/shown."""
     name, text = folder.name, (folder / page).read_text()
     copy([*(folder / table for table in tables), *sorted((folder / "figures").glob("*.svg"))], SHOWN / name)
-    # The page moves, so that links to its own files and to those of the repository change.
-    for old, new in [
-        ("](figures/", f"](shown/{name}/"),
-        *((f"]({table})", f"](shown/{name}/{table})") for table in tables),
-        ("](reproduce/shown/", "](shown/"),
-        ("](docs/", "]("),
-        ("](reproduce/", "](../reproduce/"),
-    ]:
+    # The page moves, so that links to its own pictures and to files of the repository change.
+    for old, new in [("](figures/", "]("), ("](docs/shown/", "](../"), ("](docs/", "](../../"), ("](reproduce/", "](../../../reproduce/")]:
         text = text.replace(old, new)
-    (ROOT / "docs" / f"{name}.md").write_text(text)
+    (SHOWN / name / "README.md").write_text(text)
 
 
 # ---- The open settings
 
 
-def deviations():
-    """DEVIATIONS.md: what the paper leaves open, and what this replication does instead."""
+def open_settings():
+    """docs/settings.md: what the paper leaves open, and what this replication does instead."""
     settings = read_settings()
     folder = ROOT / "reproduce"
     study = tomllib.loads((folder / "sensitivity.toml").read_text())
-    # What the search has varied.
-    searched = set()
-    for screen in ["screen", "fluid-screen"]:
-        with open(SHOWN / screen / "scores.csv", newline="") as file:
-            searched.update(key for row in csv.DictReader(file) for key in re.findall(r"([\w.]+) = ", row["settings"]))
+    # What the search has varied with one-way fluid coupling, and, over these, with two-way coupling.
+    searched = {key: "search, one-way coupling" for key in varied("screen", settings)}
+    searched |= {key: "search" for screen in ["fluid-screen", "fluid-wide"] for key in varied(screen, settings)}
     lines = ["| setting | the paper says | ours | reason | source |", "|---|---|---|---|---|"]
     named = set()
     for part in study["part"]:
@@ -290,7 +382,7 @@ def deviations():
         if any(settings[key]["ours"] for key in part["settings"]):
             lines.append(
                 line(
-                    f"[{part['title']}](docs/sensitivity.md{anchor(part['name'])})",
+                    f"[{part['title']}](shown/sensitivity/README.md{anchor(part['name'])})",
                     part["settings"],
                     part["paper"],
                     part["why"],
@@ -303,15 +395,24 @@ def deviations():
             clauses = [clause.strip() for clause in setting["comment"].split(";")]
             paper = [clause for clause in clauses if clause.startswith(("stated", "the paper"))]
             ours = [clause.removeprefix("ours: ") for clause in clauses if clause not in paper]
-            reason = "; ".join(ours)
+            # The unit stands beside the value.
+            reason = re.sub(rf"^(?:{'|'.join(map(re.escape, UNITS))}), ", "", "; ".join(ours))
             paper = "; ".join(paper) or "nothing"
             lines.append(line("", [key], capital(paper), capital(reason), settings, searched))
-    between_marks(ROOT / "DEVIATIONS.md", "settings", "\n".join(lines))
+    between_marks(ROOT / "docs" / "settings.md", "settings", "\n".join(lines))
+
+
+def varied(screen, settings):
+    """Settings of which a screen of the search has several values; a candidate without one has the default's."""
+    with open(SHOWN / screen / "scores.csv", newline="") as file:
+        candidates = [dict(re.findall(r"([\w.]+) = ([^,]+)", row["settings"])) for row in csv.DictReader(file)]
+    keys = {key for candidate in candidates for key in candidate}
+    return {key for key in keys if len({candidate.get(key, settings[key]["value"]) for candidate in candidates}) > 1}
 
 
 def anchor(part):
     """The place of a part in the study's page, if the study that is shown has it."""
-    page = (ROOT / "docs" / "sensitivity.md").read_text()
+    page = (SHOWN / "sensitivity" / "README.md").read_text()
     return f"#{part}" if f'id="{part}"' in page else ""
 
 
@@ -363,10 +464,12 @@ def line(title, keys, paper, reason, settings, searched):
 def source_of(key, setting, searched):
     if stated := re.match(r"stated (\([\d.]+\))(?!.*ours:)", setting["comment"]):
         return f"paper {stated[1]}"
+    if key in FLUID:
+        return "[our interpretation](fluid.md)"
     if key.startswith("schema.authors."):
-        return "[authors' code](docs/authors-code.md)"
+        return "[authors' code](method.md)"
     if key in searched:
-        return "[search](docs/search.md)"
+        return f"[{searched[key]}](search.md)"
     if cited := re.search(r"[A-Z]\w+ and [A-Z]\w+ \(\d{4}\)", setting["comment"]):
         return cited[0]
     return "our choice"
