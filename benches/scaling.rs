@@ -6,9 +6,10 @@ use std::path::Path;
 use std::process::Command;
 use std::time::Instant;
 
+use bodyschema::estimate::estimate;
 use bodyschema::files::tables::write_rows;
-use bodyschema::internals::estimate;
 use bodyschema::numerics::rng::stream;
+use bodyschema::recording::Recording;
 use bodyschema::settings::Settings;
 use bodyschema::stages::agent::Agent;
 use bodyschema::stages::body_map::{BodyMap, ClassicalScaling};
@@ -128,8 +129,9 @@ fn estimate_size(samples: usize, sensors: usize) -> Measured {
     let (agent, trajectory) = moved(&settings);
     let tactile = sense(&agent, &trajectory, &settings.sense);
     drop((agent, trajectory));
+    let recording = Recording::new(tactile);
     let rng = || stream(1, 1, "co-motion", 0);
-    measure(|| (), |()| estimate(&tactile, &settings.quantise, &mut rng(), &|| ()))
+    measure(|| (), |()| estimate(&recording, &settings.quantise, &mut rng(), &|| ()).expect("enough sensors"))
 }
 
 fn quantise_size(samples: usize, sensors: usize) -> Measured {

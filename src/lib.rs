@@ -6,6 +6,8 @@
 //! what happens, in order; [`pipeline`] composes it and is the file to read first. All [`settings`] have their
 //! defaults in `reproduce/paper.toml`; [`files`] reads and writes what NumPy and a spreadsheet open.
 //!
+//! For one's own robot, a [`recording`] is cleaned, and [`estimate`](mod@estimate) finds its parts and tree.
+//!
 //! From a movement to a tree:
 //!
 //! ```
@@ -40,17 +42,19 @@
 //! for edge in &best.tree {
 //!     println!("component {} is joined to component {}", edge.child, edge.parent);
 //! }
-//! println!("{} parts, {:?}", parts(&best.labels), score(best, &agent.truth(), 1.0));
+//! println!("{} parts, {:?}", parts(&best.labels), score(&best.labels, &best.tree, &agent.truth(), 1.0));
 //! # assert!((2..=10).contains(&parts(&best.labels)) && best.tree.len() + 1 == parts(&best.labels));
 //! # Ok(())
 //! # }
 //! ```
 
 mod analysis;
+pub mod estimate;
 mod experiments;
 pub mod files;
 pub mod numerics;
 pub mod pipeline;
+pub mod recording;
 mod report;
 pub mod settings;
 pub mod stages;
@@ -62,7 +66,6 @@ pub mod cli;
 #[doc(hidden)]
 pub mod internals {
     pub use crate::analysis::consensus::consensus;
-    pub use crate::analysis::estimate::estimate;
     pub use crate::analysis::posterior::Posterior;
     pub use crate::analysis::published::figures;
     pub use crate::analysis::statistics;

@@ -275,7 +275,7 @@ pub fn infer_and_score(
         }
     };
     let record = |draw: &Draw| {
-        let score = score(draw, &body.truth, settings.evaluate.eligible_ari);
+        let score = score(&draw.labels, &draw.tree, &body.truth, settings.evaluate.eligible_ari);
         Record {
             simulation,
             coordination,

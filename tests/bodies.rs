@@ -4,13 +4,13 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use bodyschema::estimate::estimate;
 use bodyschema::files::body::{NamedBody, read_body};
-use bodyschema::internals::estimate;
 use bodyschema::numerics::partition::adjusted_rand_index;
 use bodyschema::numerics::rng::stream;
+use bodyschema::recording::Recording;
 use bodyschema::settings::{Base, Settings};
-use bodyschema::stages::noise::above_noise;
-use bodyschema::stages::sense::{Tactile, sense};
+use bodyschema::stages::sense::sense;
 use bodyschema::stages::simulate::simulate;
 use rand_distr::{Distribution, StandardNormal};
 
@@ -92,11 +92,14 @@ fn noise_costs_fewer_parts_if_it_counts_as_no_touch() {
                 *pressure = (*pressure + deviation * error).max(0.0);
             }
         }
-        let agreement = |tactile: &Tactile| {
-            let found = estimate(tactile, quantise, &mut stream(1, 1, "co-motion", 0), &|| ());
+        let agreement = |recording: &Recording| {
+            let found = estimate(recording, quantise, &mut stream(1, 1, "co-motion", 0), &|| ()).unwrap();
             adjusted_rand_index(&found.parts.labels, &agent.labels())
         };
-        let (felt, cut) = (agreement(&tactile), agreement(&above_noise(tactile).0));
+        let cleaned = Recording::new(tactile.clone());
+        assert_eq!(cleaned.noisy, agent.labels().len(), "{name}");
+        let as_felt = Recording { tactile, noisy: 0, ..cleaned.clone() };
+        let (felt, cut) = (agreement(&as_felt), agreement(&cleaned));
         assert!(cut > 0.8 && cut > felt + 0.05, "{name}: {felt} with noise that is felt, {cut} without");
     }
 }

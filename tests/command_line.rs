@@ -187,10 +187,10 @@ fn an_experiment_is_the_same_on_any_number_of_threads_and_complete() {
         let output = bodyschema(folder.path(), &arguments);
         assert!(output.status.code().unwrap() <= 1, "{output:?}");
         let screen = String::from_utf8(output.stdout).unwrap();
-        let last = screen.lines().last().unwrap();
-        assert!(last.contains("published 84.6 % | reproduced"), "{last}");
+        let first = screen.lines().next().unwrap();
+        assert!(first.contains("the paper reports 84.6 %"), "{first}");
         let report = fs::read_to_string(out.join("report.html")).unwrap();
-        assert!(report.contains("published 84.6 % | reproduced"));
+        assert!(report.contains("the paper reports 84.6 %"));
 
         let json = |name: &str| -> serde_json::Value {
             serde_json::from_str(&fs::read_to_string(out.join(name)).unwrap()).unwrap()
@@ -238,6 +238,42 @@ fn an_experiment_is_the_same_on_any_number_of_threads_and_complete() {
         .map(|row| row["count"].parse::<usize>().unwrap())
         .sum();
     assert_eq!(counted, 2 * 2 * 6, "two dimensions, two simulations, six chains");
+    judged_again(folder.path(), &out);
+}
+
+/// `plot` judges a finished experiment again from its samples: nothing changes, and other samples change the claims.
+fn judged_again(folder: &Path, out: &Path) {
+    let files = [
+        "claims.csv",
+        "claims.md",
+        "manifest.json",
+        "report.html",
+        "figures/fig07-parts.csv",
+        "figures/fig07-parts.svg",
+    ];
+    let read = || files.map(|name| fs::read(out.join(name)).unwrap());
+    let before = read();
+    let plot = format!("plot {}", out.display());
+    succeed(folder, &plot);
+    assert_eq!(before, read());
+    succeed(folder, &format!("verify {}", out.display()));
+
+    let parts =
+        |row: &BTreeMap<String, String>| row["id"] == "number-of-parts" && row["counting"] == "all-draws";
+    let value = || rows(&out.join("claims.csv")).iter().find(|row| parts(row)).unwrap()["value"].clone();
+    let found = value();
+    let samples = fs::read_to_string(out.join("samples.csv")).unwrap();
+    let mut lines = samples.lines();
+    let header = lines.next().unwrap();
+    let column = header.split(',').position(|name| name == "parts").unwrap();
+    let nine = |line: &str| {
+        let cells = line.split(',').enumerate().map(|(at, cell)| if at == column { "9" } else { cell });
+        cells.collect::<Vec<_>>().join(",")
+    };
+    let changed: Vec<String> = std::iter::once(header.to_owned()).chain(lines.map(nine)).collect();
+    fs::write(out.join("samples.csv"), changed.join("\n") + "\n").unwrap();
+    succeed(folder, &plot);
+    assert!(found != "9.0" && value() == "9.0", "{found} {}", value());
 }
 
 /// Five Gaussian clusters in a row, far apart, so that any working sampler finds them.

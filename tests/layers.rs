@@ -8,8 +8,19 @@ use std::fs;
 use std::path::Path;
 
 /// The rooms from the ground up: each imports only those before it.
-const ROOMS: [&str; 9] =
-    ["numerics", "stages", "files", "settings", "pipeline", "analysis", "report", "experiments", "cli"];
+const ROOMS: [&str; 11] = [
+    "numerics",
+    "stages",
+    "files",
+    "settings",
+    "pipeline",
+    "recording",
+    "estimate",
+    "analysis",
+    "report",
+    "experiments",
+    "cli",
+];
 
 /// The stages in order: each imports only those before it, and `baselines` and `schema` never each other.
 const STAGES: [&str; 14] = [
@@ -30,7 +41,7 @@ const STAGES: [&str; 14] = [
 ];
 
 /// Rooms that touch no files and no terminal.
-const CORE: [&str; 3] = ["numerics", "stages", "pipeline"];
+const CORE: [&str; 5] = ["numerics", "stages", "pipeline", "recording", "estimate"];
 
 /// What the core must not name.
 const OUTSIDE: [&str; 14] = [

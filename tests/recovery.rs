@@ -32,7 +32,7 @@ fn recovered(dims: usize, separation: f64, judge: impl Fn(Truth, usize) -> Truth
         }
         let truth = judge(body.truth, at);
         for draw in infer(&body.map, Model::DpgmmLj, &schema, 1, at, &|| ()).unwrap() {
-            let score = score(&draw, &truth, synthetic::ELIGIBLE_ARI);
+            let score = score(&draw.labels, &draw.tree, &truth, synthetic::ELIGIBLE_ARI);
             counts.0 += usize::from(score.eligible && score.tree_correct);
             counts.1 += usize::from(score.eligible);
             counts.2 += 1;
@@ -65,7 +65,7 @@ fn every_edge_weight_gives_a_tree_over_the_parts_and_the_collapsed_one_finds_it_
                 assert!(reached.contains(&edge.parent) && !reached.contains(&edge.child), "{edge_weight:?}");
                 reached.push(edge.child);
             }
-            let score = score(draw, &body.truth, synthetic::ELIGIBLE_ARI);
+            let score = score(&draw.labels, &draw.tree, &body.truth, synthetic::ELIGIBLE_ARI);
             right += usize::from(score.eligible && score.tree_correct);
         }
         // The literal weight is sticky: a child keeps its joint where its first parent was.

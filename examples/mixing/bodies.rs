@@ -116,7 +116,8 @@ fn infer_all(
     }
     let kept: Vec<_> = draws.into_iter().filter(|draw| draw.sweep > last / 2).collect();
     let posterior = Posterior::of(&map, Model::DpgmmLj, &kept, &settings, SEED, number)?;
-    let score = score(&posterior.draw(), &body.truth, 1.0);
+    let summary = posterior.draw();
+    let score = score(&summary.labels, &summary.tree, &body.truth, 1.0);
     let mixing = || posterior.mixing.iter().map(|(_, mixing)| mixing);
     condition.posteriors.push(PosteriorRow {
         body: number,

@@ -5,7 +5,6 @@ pub mod claims;
 pub mod conditions;
 pub mod consensus;
 pub mod diagnostics;
-pub mod estimate;
 pub mod measure;
 pub mod one_body;
 pub mod paired;

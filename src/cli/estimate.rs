@@ -7,23 +7,23 @@ use anyhow::{Result, ensure};
 use clap::Args;
 use serde::Serialize;
 
-use super::estimate_report::{Read, Shown};
+use super::estimate_report::Shown;
 use super::options::{SettingsAndSeed, TruthFiles, seconds};
 use super::output::say;
-use super::tree::{self, refuse_truth, say_lost, without_noise};
-use crate::analysis::estimate::{self, estimate};
+use super::tree::{self, refuse_truth, say_cleaned};
 use crate::analysis::statistics::mean;
+use crate::estimate::{self, estimate};
 use crate::experiments::progress::progress;
 use crate::files::tables::{write_rows, write_rows_of};
 use crate::files::touch::read_touch;
 use crate::files::{prepare_folder, write_text};
 use crate::numerics::rng::stream;
+use crate::recording::Recording;
 use crate::report::estimated::page;
 use crate::settings::Base;
-use crate::stages::co_motion::{MIN_SENSORS, is_signed};
-use crate::stages::schema::Draw;
-use crate::stages::tree::Truth;
-use crate::stages::usable::{Fault, Usable, usable};
+use crate::stages::co_motion::MIN_SENSORS;
+use crate::stages::evaluate::score;
+use crate::stages::usable::Fault;
 
 /// Estimates parts and tree of any body from touch alone, such as your own robot (not in the paper).
 ///
@@ -90,38 +90,30 @@ impl Estimate {
         let all = read_touch(input)?;
         let count = all.sensors();
         let truth = self.truth.read(count)?;
-        let Usable { tactile, sensors, dropped, lost_samples, samples } = usable(all);
-        say_lost(input, lost_samples);
-        let (tactile, noisy) = without_noise(input, tactile);
+        let recording = Recording::new(all);
+        say_cleaned(input, &recording);
+        // Before anything is written.
         ensure!(
-            sensors.len() >= MIN_SENSORS,
+            recording.sensors.len() >= MIN_SENSORS,
             "{}: {} of {count} sensors feel anything usable, but estimating parts needs at least {MIN_SENSORS}; for known parts, use \
              `bodyschema tree`",
             in_file(),
-            sensors.len()
+            recording.sensors.len()
         );
         refuse_truth(out)?;
         prepare_folder(out)?;
-        if let Some((first, fault)) = dropped.first() {
+        if let Some((first, fault)) = recording.dropped.first() {
             eprintln!(
                 "bodyschema: {}: {} of {count} sensors are left out (the first, {first}, is {fault}); see dropped.csv",
                 input.display(),
-                dropped.len()
+                recording.dropped.len()
             );
         }
         let bar = progress(3, "estimate".to_owned());
         let mut rng = stream(seed, 1, "co-motion", 0);
-        let found = estimate(&tactile, &settings.quantise, &mut rng, &|| bar.inc(1));
+        let found = estimate(&recording, &settings.quantise, &mut rng, &|| bar.inc(1))?;
         bar.finish_and_clear();
-        let read = Read {
-            tactile: &tactile,
-            sensors: &sensors,
-            dropped: &dropped,
-            samples: &samples,
-            lost_samples,
-            noisy,
-        };
-        let summary = write(out, &found, &read, seed)?;
+        let summary = write(out, &found, &recording, seed)?;
         let shown = Shown {
             name: in_file(),
             interval: self.interval,
@@ -129,11 +121,11 @@ impl Estimate {
             of: settings.map.of,
             seed,
         };
-        write_text(&out.join("report.html"), &page(&shown.estimated(&found, &read)))?;
+        write_text(&out.join("report.html"), &page(&shown.estimated(&found, &recording)))?;
         say(format!(
             "{} parts of {} sensors over {} samples, in {}; open report.html there",
             summary.parts,
-            sensors.len(),
+            recording.sensors.len(),
             summary.samples,
             out.display()
         ))?;
@@ -147,17 +139,16 @@ impl Estimate {
         }
         tree::print(&found.tree, &found.parts.labels)?;
         if let Some(truth) = truth {
-            let own = sensors.iter().map(|&sensor| truth.labels[sensor]).collect();
-            let draw = Draw::of(found.parts.labels, found.tree.tree);
-            tree::print_score(&draw, &Truth { labels: own, tree: truth.tree }, 1.0)?;
+            let score = score(&found.parts.labels, &found.tree.tree, &recording.truth(&truth), 1.0);
+            tree::print_score(&score)?;
         }
         Ok(ExitCode::SUCCESS)
     }
 }
 
 /// Writes all files.
-fn write(out: &Path, found: &estimate::Estimate, read: &Read, seed: u64) -> Result<Summary> {
-    let &Read { tactile, sensors, dropped, lost_samples, noisy, .. } = read;
+fn write(out: &Path, found: &estimate::Estimate, recording: &Recording, seed: u64) -> Result<Summary> {
+    let Recording { tactile, sensors, dropped, lost_samples, noisy, signed, .. } = recording;
     let parts = sensors.iter().enumerate().map(|(at, &sensor)| {
         let (next_part, next_unexplained) = found.parts.others[at].first().copied().unzip();
         let (part, unexplained) = (found.parts.labels[at], found.parts.left[at]);
@@ -171,9 +162,9 @@ fn write(out: &Path, found: &estimate::Estimate, read: &Read, seed: u64) -> Resu
         samples: tactile.samples,
         sensors: sensors.len() + dropped.len(),
         dropped: dropped.len(),
-        lost_samples,
-        noisy,
-        signed: is_signed(tactile),
+        lost_samples: *lost_samples,
+        noisy: *noisy,
+        signed: *signed,
         parts: found.tree.parts.len(),
         seed,
         revision: env!("BODYSCHEMA_REVISION"),

@@ -3,41 +3,16 @@
 use std::collections::BTreeMap;
 
 use super::tree::in_words;
-use crate::analysis::estimate::Estimate;
 use crate::analysis::statistics::quantile;
+use crate::estimate::Estimate;
+use crate::recording::Recording;
 use crate::report::estimated::{Estimated, PartLine};
 use crate::report::viewer::frames::Frames;
 use crate::report::viewer::scene::{Parts, Scene, TreeEdge};
 use crate::report::viewer::sketch::sketch;
 use crate::stages::body_map::{BodyMap, MapOf};
 use crate::stages::evaluate::score;
-use crate::stages::schema::Draw;
-use crate::stages::sense::Tactile;
 use crate::stages::tree::{Edge, Truth};
-use crate::stages::usable::Fault;
-
-/// What of the input was used.
-pub struct Read<'a> {
-    /// Pressures of the sensors that were used.
-    pub tactile: &'a Tactile,
-    /// These sensors.
-    pub sensors: &'a [usize],
-    /// The others.
-    pub dropped: &'a [(usize, Fault)],
-    /// The samples that were used.
-    pub samples: &'a [usize],
-    /// How many were not.
-    pub lost_samples: usize,
-    /// Sensors with noise.
-    pub noisy: usize,
-}
-
-impl Read<'_> {
-    /// All sensors of the input.
-    pub fn count(&self) -> usize {
-        self.sensors.len() + self.dropped.len()
-    }
-}
 
 /// What is known besides the estimate.
 pub struct Shown<'a> {
@@ -55,80 +30,82 @@ pub struct Shown<'a> {
 
 impl Shown<'_> {
     /// What the page shows.
-    pub fn estimated(&self, found: &Estimate, read: &Read) -> Estimated {
+    pub fn estimated(&self, found: &Estimate, recording: &Recording) -> Estimated {
         Estimated {
             name: self.name.clone(),
-            answers: self.answers(found, read),
+            answers: self.answers(found, recording),
             parts: parts(found),
-            scene: self.scene(found, read),
-            facts: self.facts(read),
+            scene: self.scene(found, recording),
+            facts: self.facts(recording),
         }
     }
 
-    fn answers(&self, found: &Estimate, read: &Read) -> Vec<String> {
+    fn answers(&self, found: &Estimate, recording: &Recording) -> Vec<String> {
         let tree = &found.tree;
         let sure = tree.tree.iter().filter(|edge| tree.confidence(edge) >= 0.95).count();
         let mut answers = vec![format!(
             "{} parts of {} sensors; {sure} of {} joints have a bootstrap support of at least 95 % (given the parts)",
             tree.parts.len(),
-            read.sensors.len(),
+            recording.sensors.len(),
             tree.tree.len()
         )];
         if let Some(truth) = self.truth {
-            let own = read.sensors.iter().map(|&sensor| truth.labels[sensor]).collect();
-            let truth = Truth { labels: own, tree: truth.tree.clone() };
-            let score = score(&Draw::of(found.parts.labels.clone(), tree.tree.clone()), &truth, 1.0);
+            let score = score(&found.parts.labels, &tree.tree, &recording.truth(truth), 1.0);
             answers.push(format!("Against the truth: {}", in_words(&score)));
         }
         answers
     }
 
-    fn facts(&self, read: &Read) -> Vec<(&'static str, String)> {
-        let dropped = match read.dropped.len() {
+    fn facts(&self, recording: &Recording) -> Vec<(&'static str, String)> {
+        let dropped = match recording.dropped.len() {
             0 => "none".to_owned(),
-            many => format!("{many} of {} (dropped.csv says which and why)", read.count()),
+            many => format!("{many} of {} (dropped.csv says which and why)", recording.all_sensors()),
         };
         vec![
             ("pressures", self.name.clone()),
-            ("samples", read.tactile.samples.to_string()),
-            ("samples left out", read.lost_samples.to_string()),
+            ("samples", recording.tactile.samples.to_string()),
+            ("samples left out", recording.lost_samples.to_string()),
             ("sensors left out", dropped),
-            ("noisy sensors, which are smoothed", read.noisy.to_string()),
+            ("noisy sensors, which are smoothed", recording.noisy.to_string()),
             ("seed", self.seed.to_string()),
             ("revision", env!("BODYSCHEMA_REVISION").to_owned()),
         ]
     }
 
-    fn map(&self, found: &Estimate, read: &Read) -> Option<BodyMap> {
-        let mapped: Vec<usize> = found.mapped.iter().map(|&at| read.sensors[at]).collect();
-        sketch(&found.distances, self.of, &mapped, read.count())
+    fn map(&self, found: &Estimate, recording: &Recording) -> Option<BodyMap> {
+        let mapped: Vec<usize> = found.mapped.iter().map(|&at| recording.sensors[at]).collect();
+        sketch(&found.distances, self.of, &mapped, recording.all_sensors())
     }
 
-    fn scene(&self, found: &Estimate, read: &Read) -> Scene {
-        let count = read.count();
-        let frames = Frames::of(read.tactile, 0, Frames::every(self.interval), Frames::ROOM);
+    fn scene(&self, found: &Estimate, recording: &Recording) -> Scene {
+        let count = recording.all_sensors();
+        let frames = Frames::of(&recording.tactile, 0, Frames::every(self.interval), Frames::ROOM);
         // A sensor that was left out felt nothing that counts.
         let mut touch = vec![0.0; frames.count * count];
-        for (series, &sensor) in read.tactile.series().zip(read.sensors) {
+        for (series, &sensor) in recording.tactile.series().zip(&recording.sensors) {
             frames.samples().enumerate().for_each(|(at, sample)| touch[at * count + sensor] = series[sample]);
         }
         let mut of = vec![None; count];
-        read.sensors.iter().zip(&found.parts.labels).for_each(|(&sensor, &part)| of[sensor] = Some(part));
+        recording
+            .sensors
+            .iter()
+            .zip(&found.parts.labels)
+            .for_each(|(&sensor, &part)| of[sensor] = Some(part));
         let edge = |edge: &Edge| TreeEdge {
             child: edge.child,
             parent: edge.parent,
             confidence: Some(found.tree.confidence(edge)),
         };
-        let times = frames.samples().map(|sample| read.samples[sample]);
+        let times = frames.samples().map(|sample| recording.samples[sample]);
         Scene {
             name: String::new(),
-            times: (read.lost_samples > 0).then(|| times.collect()),
+            times: (recording.lost_samples > 0).then(|| times.collect()),
             frames,
             interval: self.interval,
             sensors: count,
             touch,
             body: None,
-            map: self.map(found, read),
+            map: self.map(found, recording),
             truth: self.truth.map(Parts::of_truth),
             estimate: Some(Parts { of, tree: found.tree.tree.iter().map(edge).collect() }),
         }

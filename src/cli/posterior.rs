@@ -12,6 +12,7 @@ use crate::analysis::posterior::Posterior;
 use crate::files::tables::write_rows;
 use crate::numerics::partition::sizes;
 use crate::report::text_tree::text_tree;
+use crate::stages::evaluate::score;
 use crate::stages::tree::Truth;
 
 #[derive(Serialize)]
@@ -98,7 +99,8 @@ pub fn print(posterior: &Posterior, truth: Option<&Truth>, eligible_ari: f64) ->
         say(format!("posterior probability of this tree, given these parts: {}", percent(tree.probability)))?;
     }
     if let Some(truth) = truth {
-        print_score(&posterior.draw(), truth, eligible_ari)?;
+        let summary = posterior.draw();
+        print_score(&score(&summary.labels, &summary.tree, truth, eligible_ari))?;
     }
     if let Some(what) = posterior.unmixed() {
         eprintln!(

@@ -15,7 +15,7 @@ use crate::report::{page, plot};
 /// Renders the figures of an experiment or study again from their tables, and writes its report again.
 ///
 /// Reads DIR/figures/*.csv and writes an .svg beside each. If DIR holds a finished experiment, judges its claims again from its
-/// samples.csv, with the accepted ranges of this program, and writes claims.csv, claims.md and report.html. If DIR holds a sensitivity study: its figures and sensitivity.md, from sensitivity.csv and
+/// samples.csv, with the accepted ranges of this program, and writes the figures, claims.csv, claims.md and report.html. If DIR holds a sensitivity study: its figures and sensitivity.md, from sensitivity.csv and
 /// design.toml. If it holds a comparison: its figures and comparison.md. If it holds a multiverse: its tables, figures and
 /// multiverse.md, from the specifications. If it holds a study of bodies: bodies.md and its figure.
 #[derive(Args)]
@@ -49,6 +49,9 @@ impl Plot {
             say(format!("bodies.md and its figure in {}", folder.display()))?;
             return Ok(ExitCode::SUCCESS);
         }
+        if Manifest::is_in(folder) {
+            reproduce::rejudge(folder)?;
+        }
         let figures = folder.join("figures");
         let pictures = plot::render(&figures)?;
         ensure!(
@@ -58,7 +61,6 @@ impl Plot {
         );
         say(format!("{} figures in {}", pictures.len(), figures.display()))?;
         if Manifest::is_in(folder) {
-            reproduce::rejudge(folder)?;
             page::write(folder)?;
             say(format!("report in {}", folder.join("report.html").display()))?;
         }

@@ -283,9 +283,9 @@ impl Infer {
         if let Some(posterior) = &posterior {
             draws.iter_mut().for_each(|draw| named_after(&posterior.consensus.labels, draw));
         }
-        let scores: Option<Vec<Score>> = truth
-            .as_ref()
-            .map(|truth| draws.iter().map(|draw| score(draw, truth, evaluate.eligible_ari)).collect());
+        let scores: Option<Vec<Score>> = truth.as_ref().map(|truth| {
+            draws.iter().map(|draw| score(&draw.labels, &draw.tree, truth, evaluate.eligible_ari)).collect()
+        });
         npy::write_assignments(&out.join("assignments.npy"), &draws)?;
         tables::write_draws(&out.join("samples.csv"), &draws, schema.keep, scores.as_deref())?;
         tables::write_trees(&out.join("trees.csv"), &draws, schema.keep)?;

@@ -14,14 +14,11 @@ use crate::files::tables::{read_parts, write_rows_of};
 use crate::files::touch::read_touch;
 use crate::numerics::partition::sizes;
 use crate::numerics::rng::stream;
+use crate::recording::Recording;
 use crate::report::text_tree::text_tree;
 use crate::stages::co_motion::{CoMotion, MAX_COMPONENTS, Pair, co_motion};
 use crate::stages::evaluate::{Score, score};
-use crate::stages::noise::above_noise;
-use crate::stages::schema::Draw;
-use crate::stages::sense::Tactile;
 use crate::stages::tree::Truth;
-use crate::stages::usable::{Usable, usable};
 
 /// Estimates how given parts are joined, from the speeds of their joints (not in the paper).
 ///
@@ -74,53 +71,46 @@ impl Tree {
         let count = all.sensors();
         let parts = read_parts(&self.parts, count)?;
         let truth = self.truth.read(count)?;
-        let Usable { tactile, sensors, dropped, lost_samples, .. } = usable(all);
-        say_lost(input, lost_samples);
-        let (tactile, _) = without_noise(input, tactile);
-        for (sensor, fault) in dropped.iter().filter(|(sensor, _)| parts[*sensor].is_some()) {
+        let recording = Recording::new(all);
+        say_cleaned(input, &recording);
+        for (sensor, fault) in recording.dropped.iter().filter(|(sensor, _)| parts[*sensor].is_some()) {
             eprintln!("bodyschema: {}: sensor {sensor} is {fault}, and is left out", input.display());
         }
-        let own: Vec<Option<usize>> = sensors.iter().map(|&sensor| parts[sensor]).collect();
+        let own = recording.of_sensors(&parts);
         let labels: Vec<usize> = own.iter().copied().flatten().collect();
         ensure!(!labels.is_empty(), "{}: no sensor that has a part feels anything", input.display());
         refuse_truth(out)?;
         prepare_folder(out)?;
         let mut rng = stream(self.seed.unwrap_or(paper().experiment.seed), 1, "co-motion", 0);
         let components = self.components.map(|k| k as usize);
-        let found = co_motion(&tactile, &own, components, &mut rng);
+        let found = co_motion(&recording.tactile, &own, components, &mut rng);
         write(out, &found)?;
         print(&found, &labels)?;
         if let Some(truth) = truth {
-            let kept = sensors.iter().zip(&own).filter(|(_, part)| part.is_some());
-            let own = kept.map(|(&sensor, _)| truth.labels[sensor]).collect();
-            let draw = Draw::of(labels, found.tree);
-            print_score(&draw, &Truth { labels: own, tree: truth.tree }, 1.0)?;
+            let all = recording.truth(&truth);
+            let kept =
+                all.labels.iter().zip(&own).filter(|(_, part)| part.is_some()).map(|(label, _)| *label);
+            let truth = Truth { labels: kept.collect(), tree: all.tree };
+            print_score(&score(&labels, &found.tree, &truth, 1.0))?;
         }
         Ok(ExitCode::SUCCESS)
     }
 }
 
-/// Says how many samples were left out.
-pub fn say_lost(input: &Path, lost_samples: usize) {
-    if lost_samples > 0 {
+/// Says what cleaning changed.
+pub fn say_cleaned(input: &Path, Recording { tactile, lost_samples, noisy, .. }: &Recording) {
+    let name = input.display();
+    if *lost_samples > 0 {
         eprintln!(
-            "bodyschema: {}: {lost_samples} samples are left out, because most sensors have no value there",
-            input.display()
+            "bodyschema: {name}: {lost_samples} samples are left out, because most sensors have no value there"
         );
     }
-}
-
-/// What is above the noise, and how many sensors have noise, with a line that says so.
-pub fn without_noise(input: &Path, tactile: Tactile) -> (Tactile, usize) {
-    let (tactile, noisy) = above_noise(tactile);
-    if noisy > 0 {
+    if *noisy > 0 {
         eprintln!(
-            "bodyschema: {}: {noisy} of {} sensors are noisy; they are smoothed, and pressures within the noise count as no touch",
-            input.display(),
+            "bodyschema: {name}: {noisy} of {} sensors are noisy; they are smoothed, and pressures within the noise count as no touch",
             tactile.sensors()
         );
     }
-    (tactile, noisy)
 }
 
 /// Refuses a folder whose tree.csv is the true one, which would be lost.
@@ -134,9 +124,8 @@ pub fn refuse_truth(out: &Path) -> Result<()> {
 }
 
 /// Prints how parts and tree compare with the truth.
-pub fn print_score(draw: &Draw, truth: &Truth, eligible_ari: f64) -> Result<()> {
-    let score = score(draw, truth, eligible_ari);
-    say(format!("against the truth: {}", in_words(&score)))
+pub fn print_score(score: &Score) -> Result<()> {
+    say(format!("against the truth: {}", in_words(score)))
 }
 
 /// A score, in words.

@@ -67,6 +67,11 @@ impl ResultFolder {
         self.names.extend(names);
     }
 
+    /// Remembers files that are there already, each once.
+    pub fn remember_new(&mut self, names: impl IntoIterator<Item = String>) {
+        names.into_iter().for_each(|name| self.remember_one(&name));
+    }
+
     /// Removes files that an earlier run left, so that they do not stand beside those of this one.
     ///
     /// # Errors

@@ -3,7 +3,6 @@
 use serde::{Deserialize, Serialize};
 
 use super::figure_rows::Counting;
-use super::headline::Headline;
 use super::markdown;
 use super::numbers;
 use crate::analysis::cells::EstimateCells;
@@ -251,14 +250,9 @@ pub fn illustrated(rows: Vec<Row>) -> Vec<Row> {
     rows.into_iter().map(|row| Row { verdict: None, one_body: None, ..row }).collect()
 }
 
-/// The text of `claims.md`: the headline, `preamble`, and the table of all claims.
-pub fn markdown(preamble: &str, rows: &[Row]) -> String {
-    let headline = Headline::of(rows).map_or(String::new(), |headline| headline.in_markdown() + "\n\n");
-    let mut lines = vec![
-        format!("{headline}{preamble}\n"),
-        markdown::row(Row::HEADER),
-        markdown::rule(Row::HEADER.len()),
-    ];
+/// The table in Markdown.
+pub fn markdown_table(rows: &[Row]) -> String {
+    let mut lines = vec![markdown::row(Row::HEADER), markdown::rule(Row::HEADER.len())];
     lines.extend(rows.iter().map(|row| markdown::row(row.in_words())));
     lines.join("\n") + "\n"
 }

@@ -2,7 +2,7 @@
 
 use maud::{Markup, html};
 
-use super::claims_table::Row;
+use super::claims_table::{Row, markdown_table};
 use super::figure_rows::Counting;
 use super::{markdown, numbers};
 use crate::analysis::claims::Verdict;
@@ -76,6 +76,12 @@ impl Headline {
     }
 }
 
+/// The text of `claims.md`: the headline, `preamble`, and the table of all claims.
+pub fn claims_page(preamble: &str, rows: &[Row]) -> String {
+    let headline = Headline::of(rows).map_or(String::new(), |headline| headline.in_markdown() + "\n\n");
+    format!("{headline}{preamble}\n\n{}", markdown_table(rows))
+}
+
 /// Where the paper has it, such as "p = 0.9 and d = 14".
 fn place(claim: &Claim) -> String {
     let Measure::TreeRate { at } = &claim.measure else { unreachable!("the headline is a rate of trees") };
@@ -86,7 +92,7 @@ fn sentence(claim: &Claim, row: &Row) -> String {
     let (place, published) = (place(claim), &claim.wording);
     if row.value.is_none() {
         return format!(
-            "No sample at {place} is eligible, so the tree accuracy cannot be judged; the paper reports {published}."
+            "There is no eligible sample at {place}, so the tree accuracy cannot be judged; the paper reports {published}."
         );
     }
     let unit = match row.cells.simulations {
@@ -166,8 +172,8 @@ mod tests {
         );
         let table = headline.in_terminal();
         for line in [
-            "\npublished                                  84.6 %\n",
-            "\nverdict                                    not reproduced\n",
+            "\npublished                                   84.6 %\n",
+            "\nverdict                                     not reproduced\n",
             "\ndifference, if the published rate is 11/13  +10.4 points (",
         ] {
             assert!(table.contains(line), "{table} lacks {line}");
@@ -182,7 +188,12 @@ mod tests {
     #[test]
     fn without_an_eligible_sample_nothing_is_judged() {
         let headline = Headline::of(&rows(&no_eligible_sample())).unwrap();
-        assert!(headline.sentence.starts_with("No sample at p = 0.9 and d = 14 is eligible"), "{headline:?}");
+        assert!(headline.sentence.starts_with("There is no eligible sample at p = 0.9"), "{headline:?}");
         assert_eq!(Headline::of(&[]), None);
+
+        let page = claims_page("What was run.", &rows(&no_eligible_sample()));
+        assert!(page.starts_with("**There is no eligible sample at p = 0.9"), "{page}");
+        assert!(page.contains("\n\nWhat was run.\n\n| verdict | claim | published | reproduced |"), "{page}");
+        assert!(!page.contains("| none |"), "{page}");
     }
 }

@@ -1,6 +1,6 @@
-//! Stage 7, `evaluate`: compare a draw with the truth (section 5.2).
+//! Stage 7, `evaluate`: compare estimated parts and tree with the truth (section 5.2).
 //!
-//! In: a [`Draw`] of the body schema and the [`Truth`]. Out: a [`Score`]: the adjusted Rand index, whether the tree is
+//! In: the part of each sensor and a tree over the parts, such as those of a posterior sample, and the [`Truth`]. Out: a [`Score`]: the adjusted Rand index, whether the tree is
 //! eligible, and whether it is right.
 
 use std::collections::BTreeMap;
@@ -10,7 +10,6 @@ use serde::{Deserialize, Serialize};
 pub use crate::numerics::partition::adjusted_rand_index;
 use crate::numerics::partition::sizes;
 use crate::numerics::range::{Checked, check};
-use crate::stages::schema::Draw;
 use crate::stages::tree::{Edge, Truth};
 
 /// What counts as a success (section 5.2).
@@ -44,14 +43,14 @@ pub struct Score {
     pub tree_correct: bool,
 }
 
-/// Evaluates a draw against the truth (section 5.2); `eligible_ari` is the minimum ARI at which its tree counts.
-pub fn score(draw: &Draw, truth: &Truth, eligible_ari: f64) -> Score {
-    let ari = adjusted_rand_index(&draw.labels, &truth.labels);
+/// Evaluates estimated parts and their tree against the truth (section 5.2); `eligible_ari` is the minimum ARI at which its tree counts.
+pub fn score(labels: &[usize], tree: &[Edge], truth: &Truth, eligible_ari: f64) -> Score {
+    let ari = adjusted_rand_index(labels, &truth.labels);
     Score {
         ari,
         // A rounding below 1 is still 1.
-        eligible: parts(&draw.labels) == truth.parts() && ari >= eligible_ari - 1e-12,
-        tree_correct: tree_correct(&draw.labels, &draw.tree, truth),
+        eligible: parts(labels) == truth.parts() && ari >= eligible_ari - 1e-12,
+        tree_correct: tree_correct(labels, tree, truth),
     }
 }
 
@@ -121,17 +120,17 @@ mod tests {
         Truth { labels: [[0; 4], [1; 4], [2; 4]].concat(), tree: vec![(1, 0), (2, 1)] }
     }
 
-    fn draw(labels: &[usize], edges: &[(usize, usize)]) -> Draw {
-        let tree = edges.iter().map(|&(child, parent)| Edge { child, parent }).collect();
-        Draw { chain: 0, sweep: 1, labels: labels.to_vec(), tree, joints: Vec::new(), log_posterior: None }
+    fn scored(labels: &[usize], edges: &[(usize, usize)], ari: f64) -> Score {
+        let tree: Vec<Edge> = edges.iter().map(|&(child, parent)| Edge { child, parent }).collect();
+        score(labels, &tree, &chain_of_three(), ari)
     }
 
     #[test]
     fn a_tree_is_right_whatever_its_labels_and_directions() {
         let labels = [[7; 4], [2; 4], [5; 4]].concat();
-        let right = score(&draw(&labels, &[(7, 2), (5, 2)]), &chain_of_three(), 1.0);
+        let right = scored(&labels, &[(7, 2), (5, 2)], 1.0);
         assert_eq!(right, Score { ari: 1.0, eligible: true, tree_correct: true });
-        let wrong = score(&draw(&labels, &[(2, 7), (5, 7)]), &chain_of_three(), 1.0);
+        let wrong = scored(&labels, &[(2, 7), (5, 7)], 1.0);
         assert_eq!(wrong, Score { ari: 1.0, eligible: true, tree_correct: false });
     }
 
@@ -139,7 +138,7 @@ mod tests {
     fn a_single_sensor_is_no_part_and_spoils_a_perfect_ari() {
         let mut labels = [[0; 4], [1; 4], [2; 4]].concat();
         labels[0] = 9;
-        let score_at = |ari| score(&draw(&labels, &[(1, 0), (2, 1)]), &chain_of_three(), ari);
+        let score_at = |ari| scored(&labels, &[(1, 0), (2, 1)], ari);
         assert_eq!(parts(&labels), 3);
         assert!(!score_at(1.0).eligible && score_at(0.8).eligible);
         assert!(score_at(0.8).tree_correct);
@@ -148,10 +147,10 @@ mod tests {
     #[test]
     fn too_many_parts_or_two_for_one_are_never_right() {
         let four = [[0; 4], [1; 4], [2, 2, 3, 3]].concat();
-        let score_four = score(&draw(&four, &[(1, 0), (2, 1), (3, 2)]), &chain_of_three(), 0.0);
+        let score_four = scored(&four, &[(1, 0), (2, 1), (3, 2)], 0.0);
         assert!(!score_four.eligible && !score_four.tree_correct);
         let doubled = [[0, 0, 1, 1], [2; 4], [2; 4]].concat();
-        let score_doubled = score(&draw(&doubled, &[(1, 0), (2, 1)]), &chain_of_three(), 0.0);
+        let score_doubled = scored(&doubled, &[(1, 0), (2, 1)], 0.0);
         assert!(score_doubled.eligible && !score_doubled.tree_correct);
     }
 

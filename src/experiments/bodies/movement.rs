@@ -5,19 +5,17 @@ use serde::{Deserialize, Serialize};
 
 use super::design::{Design, Recording, StudyBody};
 use super::peers;
-use crate::analysis::estimate::estimate;
+use crate::estimate::estimate;
 use crate::numerics::rng::stream;
+use crate::recording::Recording as Cleaned;
 use crate::settings::Settings;
-use crate::stages::co_motion::{MIN_SENSORS, co_motion_tree};
+use crate::stages::co_motion::co_motion_tree;
 use crate::stages::distance::information_metric;
 use crate::stages::evaluate::{joins, parts, parts_match, score};
-use crate::stages::noise::above_noise;
 use crate::stages::quantise::quantise;
-use crate::stages::schema::Draw;
 use crate::stages::sense::{Tactile, sense};
 use crate::stages::simulate::simulate;
 use crate::stages::tree::{Edge, Truth};
-use crate::stages::usable::{Usable, usable};
 
 /// A movement of the study.
 pub struct Movement<'a> {
@@ -166,27 +164,25 @@ impl Movement<'_> {
         let Settings { quantise: levels, experiment, .. } = self.settings;
         let &Recording { samples, noise } = seen.recording;
         let nothing = self.nothing(seen);
-        let Usable { tactile, sensors, .. } = usable(tactile);
-        // A short recording may be of a body whose joints are all locked.
-        if sensors.len() < MIN_SENSORS {
-            return (nothing, Vec::new());
-        }
-        let (tactile, _) = above_noise(tactile);
-        let own = sensors.iter().map(|&at| seen.truth.labels[at]).collect();
-        let truth = Truth { labels: own, tree: seen.truth.tree.clone() };
+        let recording = Cleaned::new(tactile);
         let mut rng = stream(experiment.seed, seen.simulation, "co-motion", 0);
-        let estimated = estimate(&tactile, levels, &mut rng, &|| ());
+        // A short recording may be of a body whose joints are all locked.
+        let Ok(estimated) = estimate(&recording, levels, &mut rng, &|| ()) else {
+            return (nothing, Vec::new());
+        };
+        let truth = recording.truth(seen.truth);
+        let tactile = &recording.tactile;
         let (labels, tree) = (&estimated.parts.labels, &estimated.tree);
         let given: Vec<Option<usize>> = truth.labels.iter().copied().map(Some).collect();
-        let tree_of_true_parts = co_motion_tree(&tactile, &given);
-        let symbols = quantise(&tactile, levels);
+        let tree_of_true_parts = co_motion_tree(tactile, &given);
+        let symbols = quantise(tactile, levels);
         let distances = information_metric(&symbols);
         let [nearest, chow_liu] = peers::trees(labels, &distances, &symbols);
         let mixtures = peers::mixtures(&distances, self.settings, seen.simulation);
-        let scored =
-            |labels: &[usize], tree: &[Edge]| score(&Draw::of(labels.to_vec(), tree.to_vec()), &truth, 0.0);
-        let mixture_right =
-            |at: usize| mixtures.as_ref().is_some_and(|draws| score(&draws[at], &truth, 0.0).tree_correct);
+        let scored = |labels: &[usize], tree: &[Edge]| score(labels, tree, &truth, 0.0);
+        let mixture_right = |at: usize| {
+            mixtures.as_ref().is_some_and(|draws| scored(&draws[at].labels, &draws[at].tree).tree_correct)
+        };
         let found = scored(labels, &tree.tree);
         let row = Row {
             parts: tree.parts.len(),

@@ -25,9 +25,9 @@ use crate::files::result_folder::ResultFolder;
 use crate::files::ro_crate::RO_CRATE;
 use crate::numerics::rng::stream;
 use crate::pipeline::{BaselineRecord, Condition, Record};
-use crate::report::claims_table::{Row, illustrated, markdown, rows};
+use crate::report::claims_table::{Row, illustrated, rows};
 use crate::report::figures::Figures;
-use crate::report::headline::Headline;
+use crate::report::headline::{Headline, claims_page};
 use crate::report::{page, plot};
 use crate::settings::Settings;
 use crate::stages::agent::Agent;
@@ -83,7 +83,7 @@ pub fn reproduce(run: &Run) -> Result<Finished, ExperimentError> {
     }
     let rows = if run.quick { illustrated(rows(&judged)) } else { rows(&judged) };
     folder.write_rows("claims.csv", &rows)?;
-    folder.write_text("claims.md", &markdown(&preamble, &rows))?;
+    folder.write_text("claims.md", &claims_page(&preamble, &rows))?;
     folder.write_text("settings.toml", &settings_file(run))?;
     folder.write_manifest(manifest(run, &preamble, &tasks, &found, &rows)?)?;
     page::write(run.out)?;
@@ -206,30 +206,42 @@ fn write_figures(
     evidence: &Evidence,
     folder: &mut ResultFolder,
 ) -> Result<(), FileError> {
-    let best = evidence.conditions.best();
     let mut figures = Figures::new(folder)?;
     if let Some(Movements { agent, trajectories, interval }) = movements {
         figures.agent(agent, &trajectories[0].1.poses[..agent.parts.len()])?;
         figures.angles(trajectories, *interval)?;
     }
-    match run.experiment {
-        Experiment::Exp1 => {
-            for (condition, draw) in tasks[0].conditions.iter().zip(&found[0].best) {
-                if let Some(body) = &found[0].body
-                    && let Some(maps) = &body.maps
-                    && condition.model == Model::DpgmmLj
-                    && (2..=3).contains(&condition.dimension)
-                {
-                    figures.map(&maps.in_dims(condition.dimension), &body.truth.labels, draw)?;
-                }
+    if run.experiment == Experiment::Exp1 {
+        for (condition, draw) in tasks[0].conditions.iter().zip(&found[0].best) {
+            if let Some(body) = &found[0].body
+                && let Some(maps) = &body.maps
+                && condition.model == Model::DpgmmLj
+                && (2..=3).contains(&condition.dimension)
+            {
+                figures.map(&maps.in_dims(condition.dimension), &body.truth.labels, draw)?;
             }
+        }
+    }
+    write_curves(run.experiment, evidence, folder)
+}
+
+/// Writes the tables of the figures that samples and clusterings give, and the picture of every table in the folder.
+pub fn write_curves(
+    experiment: Experiment,
+    evidence: &Evidence,
+    folder: &mut ResultFolder,
+) -> Result<(), FileError> {
+    let best = evidence.conditions.best();
+    let mut figures = Figures::new(folder)?;
+    match experiment {
+        Experiment::Exp1 => {
             figures.baselines(&evidence.baselines)?;
             figures.by_dimension(&evidence.conditions, &best)?;
         }
         Experiment::Exp2 => figures.by_coordination(&evidence.conditions, &best)?,
     }
     let pictures = plot::render(&folder.path().join("figures"))?;
-    folder.remember(pictures.into_iter().map(|name| format!("figures/{name}")));
+    folder.remember_new(pictures.into_iter().map(|name| format!("figures/{name}")));
     Ok(())
 }
 

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::super::error::ExperimentError;
-use super::experiment::{Finished, judge_all};
+use super::experiment::{Finished, judge_all, write_curves};
 use super::reading::other_than;
 use crate::analysis::claims::headline;
 use crate::analysis::conditions::Conditions;
@@ -13,11 +13,11 @@ use crate::files::manifest::Manifest;
 use crate::files::provenance::Provenance;
 use crate::files::result_folder::ResultFolder;
 use crate::files::{FileError, tables};
-use crate::report::claims_table::{illustrated, markdown, rows};
-use crate::report::headline::Headline;
+use crate::report::claims_table::{illustrated, rows};
+use crate::report::headline::{Headline, claims_page};
 use crate::settings::Settings;
 
-/// Writes claims.csv and claims.md again, and the manifest with their hashes; `None` where the folder does not have the samples.
+/// Writes claims.csv, claims.md and the tables and pictures of the figures again, and the manifest with their hashes; `None` where the folder does not have the samples.
 ///
 /// # Errors
 /// If a file of the experiment is missing or malformed, or one cannot be written.
@@ -38,7 +38,7 @@ pub fn rejudge(path: &Path) -> Result<Option<Finished>, ExperimentError> {
 
     let baselines = path.join("baselines.csv");
     let baselines = if baselines.is_file() { tables::read_rows(&baselines)? } else { Vec::new() };
-    let (mut judged, _) = judge_all(experiment, &settings, tables::read_rows(&samples)?, &baselines);
+    let (mut judged, evidence) = judge_all(experiment, &settings, tables::read_rows(&samples)?, &baselines);
     let other = path.join("other-reading.csv");
     if other.is_file() {
         let conditions = Conditions::new(
@@ -59,8 +59,9 @@ pub fn rejudge(path: &Path) -> Result<Option<Finished>, ExperimentError> {
     }
     let mut folder = ResultFolder::new(path);
     folder.remember(manifest.outputs.iter().map(|output| output.file.clone()));
+    write_curves(experiment, &evidence, &mut folder)?;
     folder.write_rows("claims.csv", &rows)?;
-    folder.write_text("claims.md", &markdown(&preamble, &rows))?;
+    folder.write_text("claims.md", &claims_page(&preamble, &rows))?;
     let headline = Headline::of(&rows).map(|headline| headline.sentence).into_iter().collect();
     folder.write_manifest(Manifest { summary: Some(preamble.clone()), headline, ..manifest })?;
     Ok(Some(Finished { preamble, judged, rows }))

@@ -8,7 +8,7 @@ use super::best_draw;
 use super::frames::Frames;
 use super::scene::{Parts, Scene, TreeEdge};
 use super::sketch::sketch;
-use crate::analysis::estimate::distances;
+use crate::estimate::distances;
 use crate::files::moved_body::MovedBody;
 use crate::files::tables::{read_cells, read_parts, read_rows};
 use crate::files::touch::read_touch;

@@ -22,13 +22,6 @@ pub struct Draw {
     pub log_posterior: Option<f64>,
 }
 
-impl Draw {
-    /// Parts and a tree over them that no chain drew, to be scored as one that did.
-    pub fn of(labels: Vec<usize>, tree: Vec<Edge>) -> Self {
-        Self { chain: 0, sweep: 0, labels, tree, joints: Vec::new(), log_posterior: None }
-    }
-}
-
 /// The draw of highest log posterior; the first of equal ones.
 ///
 /// # Panics

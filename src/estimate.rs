@@ -1,0 +1,111 @@
+//! Estimate the parts and the tree of any body from what its sensors felt: the stages for one's own robot, composed.
+//!
+//! ```
+//! use bodyschema::estimate::estimate;
+//! use bodyschema::numerics::rng::stream;
+//! use bodyschema::recording::Recording;
+//! use bodyschema::settings::{Base, Settings};
+//! # use bodyschema::stages::{agent::Agent, sense::sense, simulate::simulate};
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! # let mut settings = Settings::paper();
+//! # (settings.physics.duration, settings.motion.coordination) = (1500.0, 0.5);
+//! # (settings.skin.around, settings.skin.along) = (8, 3);
+//! # let agent = Agent::new(&settings.agent, &settings.skin);
+//! # let rng = &mut stream(11, 1, "motion", 0);
+//! # let moved = simulate(&agent, &settings.motion, &settings.physics, settings.sense.interval, rng, &|| ())?;
+//! # let tactile = sense(&agent, &moved, &settings.sense);
+//! // `tactile` may come from a file: bodyschema::files::touch::read_touch("tactile.npy".as_ref())?
+//! let recording = Recording::new(tactile);
+//! let levels = Settings::load_over(Some(Base::ESTIMATE), None)?.quantise;
+//! let found = estimate(&recording, &levels, &mut stream(1, 1, "co-motion", 0), &|| ())?;
+//! for edge in &found.tree.tree {
+//!     let support = 100.0 * found.tree.confidence(edge);
+//!     println!("part {} is joined to part {} (bootstrap support {support:.0} %)", edge.child, edge.parent);
+//! }
+//! println!("sensor {} is on part {}", recording.sensors[0], found.parts.labels[0]);
+//! # assert_eq!(found.tree.parts.len(), 5);
+//! # Ok(())
+//! # }
+//! ```
+
+use rand::Rng;
+
+use crate::recording::Recording;
+use crate::stages::co_motion::{CoMotion, MIN_SENSORS, RigidParts, is_signed, rigid_parts, settle, spread};
+use crate::stages::distance::{Distances, information_metric};
+use crate::stages::quantise::{Quantise, quantise};
+use crate::stages::sense::Tactile;
+
+/// Sensors whose distances are computed, spread over all.
+const MAX_SENSORS: usize = 800;
+/// Samples that distances are computed from, spread over all.
+const MAX_SAMPLES: usize = 20_000;
+
+/// What was found.
+#[derive(Debug)]
+pub struct Estimate {
+    /// The part of each sensor.
+    pub parts: RigidParts,
+    /// The tree over the parts.
+    pub tree: CoMotion,
+    /// The sensors whose distances were computed, rising.
+    pub mapped: Vec<usize>,
+    /// Their distances.
+    pub distances: Distances,
+}
+
+/// Too few sensors tell something.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error("{usable} of {all} sensors feel anything usable, but estimating parts needs at least {MIN_SENSORS}")]
+pub struct TooFewSensors {
+    /// Sensors that tell something.
+    pub usable: usize,
+    /// All sensors.
+    pub all: usize,
+}
+
+/// Estimates the parts and the tree.
+///
+/// In: a [`Recording`], and how pressures are quantised for distances. Out: the part of each of its sensors, and the tree over the parts with
+/// the bootstrap support of each edge, given the parts. Calls `tick` after each of the three steps: distances, parts, tree. The same
+/// recording and the same state of `rng` give the same bytes, whatever the number of threads.
+///
+/// # Errors
+/// If the recording has fewer sensors than [`MIN_SENSORS`].
+pub fn estimate(
+    recording: &Recording,
+    levels: &Quantise,
+    rng: &mut impl Rng,
+    tick: &dyn Fn(),
+) -> Result<Estimate, TooFewSensors> {
+    if recording.sensors.len() < MIN_SENSORS {
+        return Err(TooFewSensors { usable: recording.sensors.len(), all: recording.all_sensors() });
+    }
+    let (sensors, distances) = distances(&recording.tactile, levels);
+    tick();
+    let parts = rigid_parts(&recording.tactile, &sensors, &distances);
+    tick();
+    let (parts, tree) = settle(&recording.tactile, parts, rng);
+    tick();
+    Ok(Estimate { parts, tree, mapped: sensors, distances })
+}
+
+/// Some sensors, spread over all and rising, and their distances.
+pub fn distances(tactile: &Tactile, levels: &Quantise) -> (Vec<usize>, Distances) {
+    let sensors: Vec<usize> = spread(tactile.sensors(), MAX_SENSORS).collect();
+    let distances = information_metric(&quantise(&excerpt(tactile, &sensors), levels));
+    (sensors, distances)
+}
+
+/// Pressures of some sensors at some samples, made positive in the same order: each sensor's minus its smallest negative one.
+fn excerpt(tactile: &Tactile, sensors: &[usize]) -> Tactile {
+    let times: Vec<usize> = spread(tactile.samples, MAX_SAMPLES).collect();
+    let signed = is_signed(tactile);
+    let series: Vec<&[f32]> = tactile.series().collect();
+    let own = |&sensor: &usize| {
+        let own: Vec<f32> = times.iter().map(|&t| series[sensor][t]).collect();
+        let least = if signed { own.iter().copied().fold(0.0, f32::min) } else { 0.0 };
+        own.into_iter().map(move |pressure| pressure - least)
+    };
+    Tactile { samples: times.len(), pressures: sensors.iter().flat_map(own).collect() }
+}

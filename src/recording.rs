@@ -1,0 +1,80 @@
+//! One's own recording: what sensors felt, cleaned, and what became of each sensor and each sample.
+//!
+//! In: [`Tactile`] pressures of all sensors, of any sign, NaN where there is no value
+//! ([`read_touch`](crate::files::touch::read_touch) reads them). Out: a [`Recording`], which [`estimate`](crate::estimate) and the tree
+//! over given parts take.
+
+use crate::stages::co_motion::is_signed;
+use crate::stages::noise::above_noise;
+use crate::stages::sense::Tactile;
+use crate::stages::tree::Truth;
+use crate::stages::usable::{Fault, Usable, usable};
+
+/// A recording of sensors that tell something, at samples at which they do.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Recording {
+    /// Pressures of these sensors at these samples; smoothed where a sensor has noise, with 0 where a pressure is within it.
+    pub tactile: Tactile,
+    /// The sensors, as they were counted before, rising.
+    pub sensors: Vec<usize>,
+    /// The sensors that were left out, rising, and why.
+    pub dropped: Vec<(usize, Fault)>,
+    /// The samples, as they were counted before, rising.
+    pub samples: Vec<usize>,
+    /// How many samples were left out, because most sensors have no value there.
+    pub lost_samples: usize,
+    /// How many sensors have noise.
+    pub noisy: usize,
+    /// Whether pressures below 0 tell as much as those above.
+    pub signed: bool,
+}
+
+impl Recording {
+    /// Cleans a recording: leaves out samples at which most sensors have no value, then sensors that tell nothing, and takes noise off
+    /// the others.
+    pub fn new(tactile: Tactile) -> Self {
+        let Usable { tactile, sensors, dropped, lost_samples, samples } = usable(tactile);
+        let (tactile, noisy) = above_noise(tactile);
+        let signed = is_signed(&tactile);
+        Self { tactile, sensors, dropped, samples, lost_samples, noisy, signed }
+    }
+
+    /// How many sensors there were.
+    pub fn all_sensors(&self) -> usize {
+        self.sensors.len() + self.dropped.len()
+    }
+
+    /// What is known of each sensor that is left, of what is known of all.
+    pub fn of_sensors<T: Clone>(&self, of_all: &[T]) -> Vec<T> {
+        self.sensors.iter().map(|&sensor| of_all[sensor].clone()).collect()
+    }
+
+    /// The true parts of the sensors that are left, and the true tree.
+    pub fn truth(&self, of_all: &Truth) -> Truth {
+        Truth { labels: self.of_sensors(&of_all.labels), tree: of_all.tree.clone() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_recording_knows_what_became_of_each_sensor_and_sample() {
+        // Sensor 1 is dead, sensor 2 has no value at one sample, and no sensor has one at sample 3.
+        let nan = f32::NAN;
+        let pressures = [
+            [1.0, 0.0, 2.0, nan, 3.0],
+            [0.0, 0.0, 0.0, nan, 0.0],
+            [1.0, nan, 2.0, nan, 4.0],
+            [0.0, 5.0, 1.0, nan, 0.0],
+        ];
+        let recording = Recording::new(Tactile { samples: 5, pressures: pressures.concat() });
+        assert_eq!((&recording.sensors[..], &recording.samples[..]), (&[0, 3][..], &[0, 1, 2, 4][..]));
+        assert_eq!(recording.dropped, [(1, Fault::Dead), (2, Fault::NotFinite)]);
+        assert_eq!((recording.lost_samples, recording.noisy, recording.signed), (1, 0, false));
+        assert_eq!(recording.all_sensors(), 4);
+        let truth = Truth { labels: vec![7, 8, 8, 9], tree: vec![(8, 7), (9, 8)] };
+        assert_eq!(recording.truth(&truth), Truth { labels: vec![7, 9], ..truth });
+    }
+}
