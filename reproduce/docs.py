@@ -172,7 +172,11 @@ def answers():
             cells = [statement, row["wording"], span(row, "accepted_low", "accepted_high")]
             for name in names:
                 same = of[experiment].get(name, {}).get("claims", {}).get((id, reading))
-                cells += [f"{words(same)}{f' ({interval(same)})' if interval(same) else ''}", same["verdict"]] if same else ["–", "not run"]
+                if not same:
+                    cells += ["–", "not run"]
+                    continue
+                details = "; ".join(filter(None, [interval(same), f"n = {int(same['n']):,}"]))
+                cells += [f"{words(same)} ({details})", same["verdict"]]
             lines.append(table_row(cells))
     lines += ["", " ".join(sources(runs))]
     between_marks(ROOT / "docs" / "results.md", "claims", "\n".join(lines))
