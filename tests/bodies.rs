@@ -172,7 +172,7 @@ fn the_study_of_bodies_repeats_itself_and_names_mistakes() {
         (design("[0.5]").replace("chain-3", "chain-33"), "chain-33.toml: cannot be read"),
         (
             design("[0.5]").replace("bodies = [", "bodies = [\"old/chain-3.toml\", "),
-            "two bodies are named chain-3",
+            "two body files are named chain-3",
         ),
         (design("[1.5]"), "motion.coordination"),
     ] {
