@@ -59,7 +59,7 @@ pub fn preamble(run: &Run, resolution: Resolution) -> String {
     };
     let resolved = resolution.in_words("the movements");
     format!(
-        "{what}. {simulations}, {} chains of {} sweeps for each condition, seed {} ({seed}), revision {}. Resolution: {resolved}.{caution} \
+        "{what}. Size: {simulations}, {} chains of {} sweeps for each condition, seed {} ({seed}), revision {}. Resolution: {resolved}.{caution} \
          {scope} Rows marked extension count only the most probable sample of each simulation (highest log posterior), which the \
          paper does not do.",
         schema.chains,
