@@ -96,8 +96,8 @@ impl Reproduce {
     /// What a quick run is for, and what a full one takes.
     fn installation_works(&self, seconds: u64) -> String {
         let minutes = match self.experiment {
-            Experiment::Exp1 => 7,
-            Experiment::Exp2 => 10,
+            Experiment::Exp1 => "7 to 20",
+            Experiment::Exp2 => "10 to 30",
         };
         format!(
             "The installation works: all stages ran, in {seconds} s. The numbers below only illustrate the output; a full run (without \
