@@ -64,11 +64,6 @@ impl ResultFolder {
 
     /// Remembers files that are there already.
     pub fn remember(&mut self, names: impl IntoIterator<Item = String>) {
-        self.names.extend(names);
-    }
-
-    /// Remembers files that are there already, each once.
-    pub fn remember_new(&mut self, names: impl IntoIterator<Item = String>) {
         names.into_iter().for_each(|name| self.remember_one(&name));
     }
 

@@ -241,7 +241,7 @@ pub fn write_curves(
         Experiment::Exp2 => figures.by_coordination(&evidence.conditions, &best)?,
     }
     let pictures = plot::render(&folder.path().join("figures"))?;
-    folder.remember_new(pictures.into_iter().map(|name| format!("figures/{name}")));
+    folder.remember(pictures.into_iter().map(|name| format!("figures/{name}")));
     Ok(())
 }
 
