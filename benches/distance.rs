@@ -38,7 +38,7 @@ fn main() {
     }
 }
 
-/// Parts that wander at random, each on its own.
+/// Parts that simulate_movement at random, each on its own.
 fn wandering(parts: usize) -> Trajectory {
     let mut rng = stream(1, 1, "bench", 0);
     let mut step = || rng.random_range(-0.05..0.05);

@@ -12,7 +12,7 @@ use bodyschema::internals::statistics::mean;
 use bodyschema::numerics::rng::stream;
 use bodyschema::settings::{Base, Settings};
 use bodyschema::stages::evaluate::score;
-use bodyschema::stages::schema::{Draw, EdgeWeight, Keep, Model, Schema, infer};
+use bodyschema::stages::schema::{EdgeWeight, Keep, Model, Sample, Schema, infer};
 use plotters::prelude::*;
 
 const BODIES: usize = 24;
@@ -66,7 +66,7 @@ fn condition(sampler: &'static str, dimension: usize, separation: f64) -> Result
         let body = synthetic::body(dimension, separation, &mut stream(1, 1, &stage, at));
         identifiable += usize::from(body.identifiable);
         let draws = infer(&body.map, Model::DpgmmLj, &schema, 1, at, &|| ())?;
-        let judge = |draw: &Draw| score(&draw.labels, &draw.tree, &body.truth, synthetic::ELIGIBLE_ARI);
+        let judge = |draw: &Sample| score(&draw.labels, &draw.tree, &body.truth, synthetic::ELIGIBLE_ARI);
         let scores: Vec<_> = draws.iter().map(judge).collect();
         let eligible = scores.iter().filter(|score| score.eligible).count();
         let right = scores.iter().filter(|score| score.eligible && score.tree_correct).count();

@@ -12,7 +12,7 @@ use crate::stages::body_map::{BodyMaps, ClassicalScaling, Improvement, MapError,
 use crate::stages::distance::{Distances, information_metric};
 use crate::stages::evaluate::{parts, score};
 use crate::stages::quantise::{Quantise, quantise};
-use crate::stages::schema::{Draw, InferenceError, Model, best, infer, one_part};
+use crate::stages::schema::{InferenceError, Model, Sample, best, infer, one_part};
 use crate::stages::sense::{Tactile, sense};
 use crate::stages::simulate::{Resolution, Trajectory, Unstable, simulate};
 use crate::stages::tree::Truth;
@@ -30,7 +30,7 @@ pub struct Body {
 
 /// What stages 1 to 5 make of one simulation.
 #[derive(Debug, Clone)]
-pub struct MappedBody {
+pub struct Mapped {
     /// What the inference needs.
     pub body: Body,
     /// The information metric between all sensors.
@@ -131,7 +131,7 @@ pub enum StageError {
 
 /// What a body felt in one simulation, and its truth.
 #[derive(Debug, Clone)]
-pub struct FeltBody {
+pub struct Sensed {
     /// The pressures on its sensors.
     pub tactile: Tactile,
     /// How well the physics step resolved the movement.
@@ -144,25 +144,33 @@ pub struct FeltBody {
 ///
 /// # Errors
 /// If the simulation is unstable.
-pub fn feel(settings: &Settings, simulation: usize, tick: &dyn Fn()) -> Result<FeltBody, StageError> {
-    Ok(feel_movement(&wander(settings, simulation, tick)?, settings))
+pub fn simulate_and_sense(
+    settings: &Settings,
+    simulation: usize,
+    tick: &dyn Fn(),
+) -> Result<Sensed, StageError> {
+    Ok(sense_movement(&simulate_movement(settings, simulation, tick)?, settings))
 }
 
 /// Stage 1: moves the body, whose sensors do not matter. Calls `tick` once for each sample.
 ///
 /// # Errors
 /// If the simulation is unstable.
-pub fn wander(settings: &Settings, simulation: usize, tick: &dyn Fn()) -> Result<Trajectory, StageError> {
+pub fn simulate_movement(
+    settings: &Settings,
+    simulation: usize,
+    tick: &dyn Fn(),
+) -> Result<Trajectory, StageError> {
     let Settings { agent, skin, motion, physics, sense, experiment, .. } = settings;
     let mut rng = stream(experiment.seed, simulation, "motion", 0);
     Ok(simulate(&Agent::new(agent, skin), motion, physics, sense.interval, &mut rng, tick)?)
 }
 
 /// Stage 2: computes the pressures on the sensors of a body that moved.
-pub fn feel_movement(trajectory: &Trajectory, settings: &Settings) -> FeltBody {
+pub fn sense_movement(trajectory: &Trajectory, settings: &Settings) -> Sensed {
     let agent = Agent::new(&settings.agent, &settings.skin);
     let tactile = sense(&agent, trajectory, &settings.sense);
-    FeltBody { tactile, resolution: trajectory.resolution, truth: agent.truth() }
+    Sensed { tactile, resolution: trajectory.resolution, truth: agent.truth() }
 }
 
 /// Stages 3 to 5: maps the sensors in each number of dimensions in `dims`.
@@ -172,13 +180,13 @@ pub fn feel_movement(trajectory: &Trajectory, settings: &Settings) -> FeltBody {
 ///
 /// # Panics
 /// If `dims` is empty.
-pub fn map_felt(
-    felt: &FeltBody,
+pub fn map_sensed(
+    felt: &Sensed,
     settings: &Settings,
     simulation: usize,
     dims: &[usize],
-) -> Result<MappedBody, StageError> {
-    let quantised = quantise_felt(felt, &settings.quantise);
+) -> Result<Mapped, StageError> {
+    let quantised = measure_distances(felt, &settings.quantise);
     map_distances(felt, &quantised, settings, simulation, dims)
 }
 
@@ -192,7 +200,7 @@ pub struct Metric {
 }
 
 /// Stages 3 and 4: quantises the pressures, and computes the distances between all sensors.
-pub fn quantise_felt(felt: &FeltBody, settings: &Quantise) -> Metric {
+pub fn measure_distances(felt: &Sensed, settings: &Quantise) -> Metric {
     let symbols = quantise(&felt.tactile, settings);
     Metric { distances: information_metric(&symbols), constant_sensors: symbols.constant_sensors().len() }
 }
@@ -200,17 +208,17 @@ pub fn quantise_felt(felt: &FeltBody, settings: &Quantise) -> Metric {
 /// Stage 5: maps the sensors in each number of dimensions in `dims`.
 ///
 /// # Errors
-/// As [`map_felt`].
+/// As [`map_sensed`].
 ///
 /// # Panics
 /// If `dims` is empty.
 pub fn map_distances(
-    felt: &FeltBody,
+    felt: &Sensed,
     metric: &Metric,
     settings: &Settings,
     simulation: usize,
     dims: &[usize],
-) -> Result<MappedBody, StageError> {
+) -> Result<Mapped, StageError> {
     let Metric { distances, constant_sensors } = metric.clone();
     let largest = dims.iter().copied().max().expect("dims must not be empty");
     let scaled = scaled(&distances, settings.map.of);
@@ -231,7 +239,7 @@ pub fn map_distances(
     };
     drop(scaled);
     let body = Body { truth: felt.truth.clone(), maps, resolution: felt.resolution };
-    Ok(MappedBody { body, distances, facts })
+    Ok(Mapped { body, distances, facts })
 }
 
 /// The stream of a random start of a body map of d dimensions.
@@ -245,7 +253,7 @@ pub struct Inference {
     /// All draws, evaluated.
     pub records: Vec<Record>,
     /// The draw of highest log posterior.
-    pub best: Draw,
+    pub best: Sample,
     /// How well the physics step resolved the movement of the body.
     pub resolution: Resolution,
 }
@@ -274,7 +282,7 @@ pub fn infer_and_score(
             infer(&map, model, schema, settings.experiment.seed, simulation, tick)?
         }
     };
-    let record = |draw: &Draw| {
+    let record = |draw: &Sample| {
         let score = score(&draw.labels, &draw.tree, &body.truth, settings.evaluate.eligible_ari);
         Record {
             simulation,

@@ -12,7 +12,7 @@ use bodyschema::stages::body_map::BodyMap;
 use bodyschema::stages::evaluate::{adjusted_rand_index, parts};
 use bodyschema::stages::mixture::{Gaussian, NormalInverseWishart, Points, SufficientStatistics};
 use bodyschema::stages::schema::{
-    Densities, Departures, Draw, EdgeWeight, Keep, MeanCovariance, Model, Prior, Sampler, Schema, Start,
+    Densities, Departures, EdgeWeight, Keep, MeanCovariance, Model, Prior, Sample, Sampler, Schema, Start,
     infer,
 };
 use bodyschema::stages::tree::Edge;
@@ -333,7 +333,7 @@ impl Chains {
         };
         let map = BodyMap { dims: self.points[0].len(), coordinates: self.points.concat() };
         let draws = infer(&map, Model::DpgmmLj, &settings, seed, 1, &|| ()).unwrap();
-        let outcome = |draw: &Draw| {
+        let outcome = |draw: &Sample| {
             // The part that most of a component's points are on, the first of equally frequent ones.
             let name = |k: usize| {
                 let mut on = BTreeMap::new();

@@ -416,7 +416,7 @@ fn every_rule_finds_the_file_that_breaks_it() {
         ),
         (
             "stages::quantise",
-            "use crate::stages::schema::Draw;",
+            "use crate::stages::schema::Sample;",
             "stage schema does not come before quantise",
         ),
         (
@@ -426,10 +426,10 @@ fn every_rule_finds_the_file_that_breaks_it() {
         ),
         (
             "stages::baselines::gmm",
-            "use super::super::schema::Draw;",
+            "use super::super::schema::Sample;",
             "stage schema does not come before baselines",
         ),
-        ("stages::schema::gibbs", "use crate::stages::schema::Draw;", "from the mod.rs of a folder"),
+        ("stages::schema::gibbs", "use crate::stages::schema::Sample;", "from the mod.rs of a folder"),
         ("files::npy", "use super::FileError;", "from the mod.rs of a folder"),
         ("files::npy", "mod tests {\n    use super::super::sha256;\n}", "from the mod.rs of a folder"),
         ("files::error", "use super::whole::write_text;", "files::error is in a circle of imports"),

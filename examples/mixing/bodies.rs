@@ -8,7 +8,7 @@ use bodyschema::files::tables::write_rows;
 use bodyschema::internals::markdown::{row, rule};
 use bodyschema::internals::statistics::{Estimate, mean, wilson};
 use bodyschema::internals::{Posterior, consensus};
-use bodyschema::pipeline::{Body, feel, map_felt};
+use bodyschema::pipeline::{Body, map_sensed, simulate_and_sense};
 use bodyschema::stages::body_map::MapOf;
 use bodyschema::stages::evaluate::{adjusted_rand_index, parts, score};
 use bodyschema::stages::schema::{Keep, Model, Schema, infer};
@@ -72,8 +72,8 @@ pub fn study(folder: &Path) -> Result<String, Box<dyn Error>> {
         })
         .into();
     for body in 1..=BODIES {
-        let felt = feel(&settings, body, &|| ())?;
-        let mapped = map_felt(&felt, &settings, body, &DIMENSIONS)?.body;
+        let felt = simulate_and_sense(&settings, body, &|| ())?;
+        let mapped = map_sensed(&felt, &settings, body, &DIMENSIONS)?.body;
         for condition in &mut conditions {
             infer_all(&mapped, body, &settings.schema, condition)?;
         }

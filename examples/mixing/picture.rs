@@ -1,4 +1,4 @@
-//! Draw the pictures of the study.
+//! Sample the pictures of the study.
 
 use std::error::Error;
 use std::path::Path;

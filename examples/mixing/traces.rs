@@ -8,7 +8,7 @@ use bodyschema::files::tables::write_rows;
 use bodyschema::internals::log_sum;
 use bodyschema::internals::markdown::{row, rule};
 use bodyschema::numerics::rng::stream;
-use bodyschema::pipeline::{feel, map_felt};
+use bodyschema::pipeline::{map_sensed, simulate_and_sense};
 use bodyschema::stages::body_map::{BodyMap, MapOf};
 use bodyschema::stages::evaluate::{adjusted_rand_index, parts};
 use bodyschema::stages::mixture::{Gaussian, NormalInverseWishart, Points, Rounding, SufficientStatistics};
@@ -100,7 +100,7 @@ fn maps() -> Result<Vec<(&'static str, BodyMap)>, Box<dyn Error>> {
     maps.push(("synthetic, d = 5", synthetic::body(5, 2.0, &mut stream(SEED, 1, "synthetic", 0)).map));
     let mut settings = no_fluid();
     (settings.experiment.seed, settings.map.of) = (SEED, MapOf::Distances);
-    let body = map_felt(&feel(&settings, 1, &|| ())?, &settings, 1, &[9])?.body;
+    let body = map_sensed(&simulate_and_sense(&settings, 1, &|| ())?, &settings, 1, &[9])?.body;
     maps.push(("body that moves, d = 9", body.maps.ok_or("a body that moves has a map")?.in_dims(9)));
     Ok(maps)
 }

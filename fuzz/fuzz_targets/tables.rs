@@ -5,7 +5,7 @@
 
 use bodyschema::stages::evaluate::{parts, score};
 use bodyschema::files::tables::read_truth;
-use bodyschema::stages::schema::Draw;
+use bodyschema::stages::schema::Sample;
 use bodyschema::stages::tree::Edge;
 use bodyschema_fuzz::{accepted, file};
 use libfuzzer_sys::fuzz_target;

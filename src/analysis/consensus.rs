@@ -6,7 +6,7 @@
 use std::collections::HashMap;
 
 use crate::numerics::partition::{named_by_appearance, sizes};
-use crate::stages::schema::Draw;
+use crate::stages::schema::Sample;
 use crate::stages::tree::Edge;
 
 /// Draws that are candidates for the consensus, at most: the most frequent partition, and others evenly.
@@ -83,7 +83,7 @@ fn votes(labels: &[usize], distinct: &[(Vec<usize>, usize)]) -> Vec<Vec<usize>> 
 
 /// Names the clusters of a draw after the parts of the consensus that they match; those that match none get the numbers
 /// after them. Its tree goes with them.
-pub fn named_after(consensus: &[usize], draw: &mut Draw) {
+pub fn named_after(consensus: &[usize], draw: &mut Sample) {
     let mut names = matched(consensus, &draw.labels);
     let mut next = consensus.iter().max().map_or(0, |largest| largest + 1);
     for label in &mut draw.labels {
@@ -180,7 +180,7 @@ mod tests {
 
     #[test]
     fn a_draw_is_named_after_the_consensus_and_what_is_new_comes_after_it() {
-        let mut draw = Draw {
+        let mut draw = Sample {
             chain: 0,
             sweep: 1,
             labels: vec![7, 7, 7, 2, 2, 4],

@@ -8,7 +8,7 @@ use super::diagnostics::{LARGEST_R_HAT, LEAST_ESS, Mixing, mixing};
 use crate::numerics::partition::{adjusted_rand_index, sizes};
 use crate::stages::body_map::BodyMap;
 use crate::stages::evaluate::parts;
-use crate::stages::schema::{Draw, InferenceError, Model, Schema, TreePosterior, tree_over};
+use crate::stages::schema::{InferenceError, Model, Sample, Schema, TreePosterior, tree_over};
 use crate::stages::tree::Edge;
 
 /// What the draws say.
@@ -35,7 +35,7 @@ impl Posterior {
     pub fn of(
         map: &BodyMap,
         model: Model,
-        draws: &[Draw],
+        draws: &[Sample],
         settings: &Schema,
         seed: u64,
         simulation: usize,
@@ -49,12 +49,12 @@ impl Posterior {
             Model::Dpgmm => None,
             Model::DpgmmLj => Some(tree_over(map, &consensus.labels, settings, seed, simulation)?),
         };
-        let of_each = |number: &dyn Fn(&Draw) -> f64| {
+        let of_each = |number: &dyn Fn(&Sample) -> f64| {
             let mut chains: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
             draws.iter().for_each(|draw| chains.entry(draw.chain).or_default().push(number(draw)));
             mixing(&chains.into_values().collect::<Vec<_>>())
         };
-        let agreement = |draw: &Draw| adjusted_rand_index(&draw.labels, &consensus.labels);
+        let agreement = |draw: &Sample| adjusted_rand_index(&draw.labels, &consensus.labels);
         let mixing = vec![
             ("number of parts", of_each(&|draw| parts(&draw.labels) as f64)),
             ("log posterior", of_each(&|draw| draw.log_posterior.unwrap_or(f64::NAN))),
@@ -64,9 +64,9 @@ impl Posterior {
     }
 
     /// The consensus and the likeliest tree over it, as a draw.
-    pub fn draw(&self) -> Draw {
+    pub fn draw(&self) -> Sample {
         let edges = self.tree.iter().flat_map(|tree| &tree.tree);
-        Draw {
+        Sample {
             chain: 0,
             sweep: 0,
             labels: self.consensus.labels.clone(),

@@ -25,7 +25,7 @@ use crate::stages::body_map::{BodyMap, BodyMaps, ClassicalScaling, Improvement, 
 use crate::stages::distance::information_metric;
 use crate::stages::evaluate::{Score, parts, score};
 use crate::stages::quantise::{Scheme, quantise};
-use crate::stages::schema::{Draw, EdgeWeight, Keep, Model, Sampler, Start, best, infer};
+use crate::stages::schema::{EdgeWeight, Keep, Model, Sample, Sampler, Start, best, infer};
 use crate::stages::sense::sense;
 use crate::stages::simulate::simulate;
 
@@ -331,7 +331,7 @@ fn print_run(model: Model, map: &BodyMap, draws: usize, settings: &Settings, out
     ))
 }
 
-fn print_draws(draws: &[Draw], scores: Option<&[Score]>) -> Result<()> {
+fn print_draws(draws: &[Sample], scores: Option<&[Score]>) -> Result<()> {
     let counts: Vec<f64> = draws.iter().map(|draw| parts(&draw.labels) as f64).collect();
     say(format!("number of parts: {}", line(&mean(&counts), "mean")))?;
     let best = best(draws);

@@ -9,18 +9,18 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use indicatif::ProgressBar;
 
-use super::ahead::Ahead;
-use super::body_files::{BodyFiles, Kept};
+use super::artifacts::{ArtifactFiles, Artifacts};
+use super::cache::StageCache;
 use super::error::ExperimentError;
-use super::shared::Shared;
+use super::prefetch::Prefetch;
 use super::task::{Keep, Task, TaskProgress, by_movement};
 use crate::files::FileError;
 use crate::files::checkpoint::Checkpoints;
 use crate::pipeline::{
-    BaselineRecord, Body, Condition, Inference, MappedBody, Record, StageError, cluster_and_score,
+    BaselineRecord, Body, Condition, Inference, Mapped, Record, StageError, cluster_and_score,
     infer_and_score,
 };
-use crate::stages::schema::Draw;
+use crate::stages::schema::Sample;
 use crate::stages::simulate::Resolution;
 
 /// What a task found.
@@ -29,13 +29,13 @@ pub struct Found {
     /// All draws, evaluated, by condition.
     pub records: Vec<Record>,
     /// Of each condition the draw of highest log posterior.
-    pub best: Vec<Draw>,
+    pub best: Vec<Sample>,
     /// All clusterings, evaluated.
     pub baselines: Vec<BaselineRecord>,
     /// The body, where its files are kept.
     pub body: Option<Body>,
     /// What is known of that body.
-    pub kept: Option<Kept>,
+    pub kept: Option<Artifacts>,
     /// How well the physics step resolved its movement.
     pub resolution: Resolution,
 }
@@ -54,7 +54,7 @@ pub struct Batch<'a> {
 }
 
 /// Stages 1 to 5 of a task, with what an earlier one made of the same settings.
-type Map<'a> = &'a mut dyn FnMut() -> Result<MappedBody, String>;
+type Map<'a> = &'a mut dyn FnMut() -> Result<Mapped, String>;
 
 /// Why a task stops: it fails, which is an outcome, or a file cannot be written, which ends the run.
 enum Stop {
@@ -89,14 +89,15 @@ impl Batch<'_> {
         let progress: Vec<_> = tasks.iter().map(|_| TaskProgress::new(self.bar)).collect();
         std::thread::scope(|scope| {
             let mut all = Vec::with_capacity(tasks.len());
-            let mut shared = Shared::default();
-            let mut ahead = Ahead::new(scope, tasks, &progress);
+            let mut shared = StageCache::default();
+            let mut prefetch = Prefetch::new(scope, tasks, &progress);
             for (at, (task, progress)) in tasks.iter().zip(&progress).enumerate() {
                 self.bar.set_message(task.name.clone());
                 // A failure is not kept among the checkpoints: what failed may succeed on a machine or with a library
                 // that differs.
-                let mut map =
-                    || shared.map(&task.settings, task.simulation, &task.dimensions(), || ahead.movement(at));
+                let mut map = || {
+                    shared.map(&task.settings, task.simulation, &task.dimensions(), || prefetch.movement(at))
+                };
                 let outcome = match self.try_to_finish(task, &mut map, progress) {
                     Ok(found) => Ok(found),
                     Err(Stop::Failed(reason)) if task.keep == Keep::Nothing => Err(reason),
@@ -105,7 +106,7 @@ impl Batch<'_> {
                 };
                 progress.complete(task);
                 if !tasks.get(at + 1).is_some_and(|next| next.shares_movement(task)) {
-                    shared = Shared::default();
+                    shared = StageCache::default();
                 }
                 all.push(outcome);
             }
@@ -125,7 +126,7 @@ impl Batch<'_> {
         let next = AtomicUsize::new(0);
         let work = || {
             while let Some(movement) = movements.get(next.fetch_add(1, Ordering::Relaxed)) {
-                let mut shared = Shared::default();
+                let mut shared = StageCache::default();
                 for &at in movement {
                     match self.finish(&tasks[at], &mut shared) {
                         Ok(outcome) => *outcomes[at].lock().expect("no worker panics") = Some(outcome),
@@ -151,7 +152,7 @@ impl Batch<'_> {
     }
 
     /// Does what is left of a task, and keeps a failure, so that it is not tried again.
-    fn finish(&self, task: &Task, shared: &mut Shared) -> Result<Outcome, FileError> {
+    fn finish(&self, task: &Task, shared: &mut StageCache) -> Result<Outcome, FileError> {
         let progress = TaskProgress::new(self.bar);
         let mut map =
             || shared.map(&task.settings, task.simulation, &task.dimensions(), || task.simulate(&progress));
@@ -175,7 +176,7 @@ impl Batch<'_> {
         let mut found = Found::default();
         let mut body = None;
         if task.keep != Keep::Nothing {
-            let files = BodyFiles { out: self.out, checkpoints: self.checkpoints, name: &task.name };
+            let files = ArtifactFiles { out: self.out, checkpoints: self.checkpoints, name: &task.name };
             let (mapped, kept) = match files.recall(&task.settings) {
                 Some(recalled) => recalled,
                 None => {

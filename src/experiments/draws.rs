@@ -25,7 +25,7 @@ fn one() -> usize {
 /// What a factor decides, and all that comes after it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Decides {
+pub enum Level {
     /// How the body moves.
     Movement,
     /// What it feels, and the distances between its sensors.

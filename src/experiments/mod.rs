@@ -1,9 +1,9 @@
 //! Run the paper's experiments, the search for a default, and the study of what the paper leaves open.
 
-mod ahead;
+mod artifacts;
 mod batch;
 pub mod bodies;
-mod body_files;
+mod cache;
 pub mod compare;
 mod compared;
 mod configurations;
@@ -11,11 +11,11 @@ pub mod design;
 mod draws;
 mod error;
 pub mod multiverse;
+mod prefetch;
 pub mod progress;
 pub mod reproduce;
 pub mod search;
 mod seeds;
 pub mod sensitivity;
-mod shared;
 mod task;
 pub mod verify;

@@ -6,8 +6,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use indicatif::ProgressBar;
 
-use super::shared::Keys;
-use crate::pipeline::{Condition, wander};
+use super::cache::Keys;
+use crate::pipeline::{Condition, simulate_movement};
 use crate::settings::Settings;
 use crate::stages::simulate::Trajectory;
 
@@ -76,7 +76,7 @@ impl Task {
             let steps = |seen: usize| MOVEMENT_STEPS * seen as u64 / samples as u64;
             progress.add(steps(now) - steps(before));
         };
-        wander(&self.settings, self.simulation, &tick).map_err(|error| error.to_string())
+        simulate_movement(&self.settings, self.simulation, &tick).map_err(|error| error.to_string())
     }
 }
 

@@ -13,7 +13,7 @@ use super::whole::write_whole;
 use crate::stages::body_map::BodyMap;
 use crate::stages::distance::{Distances, MAX_SENSORS};
 use crate::stages::quantise::Symbols;
-use crate::stages::schema::Draw;
+use crate::stages::schema::Sample;
 use crate::stages::sense::Tactile;
 
 /// Writes pressures as float32, T × M. The file is in Fortran order, one sensor's series after another's,
@@ -33,7 +33,7 @@ pub fn write_body_map(path: &Path, map: &BodyMap) -> Result<(), FileError> {
 }
 
 /// Writes the component of each sensor as int32, draws × M.
-pub fn write_assignments(path: &Path, draws: &[Draw]) -> Result<(), FileError> {
+pub fn write_assignments(path: &Path, draws: &[Sample]) -> Result<(), FileError> {
     let sensors = draws.first().map_or(0, |draw| draw.labels.len());
     let labels = draws.iter().flat_map(|draw| draw.labels.iter().map(|&label| label as i32));
     write(path, [draws.len(), sensors], Order::C, labels)

@@ -10,8 +10,8 @@ use super::error::FileError;
 use super::whole::write_whole;
 use crate::stages::agent::Joint;
 use crate::stages::evaluate::{Score, parts};
-use crate::stages::schema::Draw;
 use crate::stages::schema::Keep;
+use crate::stages::schema::Sample;
 use crate::stages::simulate::Trajectory;
 use crate::stages::tree::Truth;
 
@@ -246,7 +246,7 @@ struct DrawRow {
 /// `log_posterior`, and `ari`, `eligible` and `tree_correct` if there are scores.
 pub fn write_draws(
     path: &Path,
-    draws: &[Draw],
+    draws: &[Sample],
     keep: Keep,
     scores: Option<&[Score]>,
 ) -> Result<(), FileError> {
@@ -267,7 +267,7 @@ pub fn write_draws(
 
 /// Writes `trees.csv`, a row an edge: `chain`, `sweep` where a chain has several draws, `child` and `parent`,
 /// labels as in the assignments, and, where the mixture has joints, `x1` … `xd`: the joint on the body map.
-pub fn write_trees(path: &Path, draws: &[Draw], keep: Keep) -> Result<(), FileError> {
+pub fn write_trees(path: &Path, draws: &[Sample], keep: Keep) -> Result<(), FileError> {
     let dims = draws.iter().flat_map(|draw| &draw.joints).next().map_or(0, Vec::len);
     let sweep = keep == Keep::All;
     write_whole(path, |file| {

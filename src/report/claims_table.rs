@@ -109,12 +109,12 @@ impl Row {
             bodies_high,
             bodies_together: tested.and_then(|bodies| bodies.together.value),
             one_body: tested.and_then(SingleBodies::verdict),
-            ..Self::best_draw(claim, judged.reading, reproduced, place)
+            ..Self::best_sample(claim, judged.reading, reproduced, place)
         }
     }
 
     /// The extension: over the draw of highest log posterior of each simulation.
-    fn best_draw(claim: &Claim, reading: Sampler, estimate: &Estimate, found: &str) -> Self {
+    fn best_sample(claim: &Claim, reading: Sampler, estimate: &Estimate, found: &str) -> Self {
         Self {
             id: claim.id.clone(),
             counting: Counting::BestDraw,
@@ -239,7 +239,7 @@ pub fn rows(judged: &[Judged]) -> Vec<Row> {
     let both = |judged: &Judged| {
         let best = judged.best.as_ref();
         let best =
-            best.map(|(estimate, place)| Row::best_draw(&judged.claim, judged.reading, estimate, place));
+            best.map(|(estimate, place)| Row::best_sample(&judged.claim, judged.reading, estimate, place));
         std::iter::once(Row::all_draws(judged)).chain(best)
     };
     judged.iter().flat_map(both).collect()

@@ -16,7 +16,7 @@ use crate::files::result_folder::ResultFolder;
 use crate::pipeline::Condition;
 use crate::stages::agent::Agent;
 use crate::stages::body_map::BodyMap;
-use crate::stages::schema::{Draw, Model};
+use crate::stages::schema::{Model, Sample};
 use crate::stages::simulate::{Pose, Trajectory};
 
 /// Explains the tables to whoever opens the folder.
@@ -82,7 +82,7 @@ impl<'a> Figures<'a> {
 
     /// Figure 6: a body map of two or three dimensions with the true parts, and with the clusters and joints
     /// of a draw.
-    pub fn map(&mut self, map: &BodyMap, parts: &[usize], draw: &Draw) -> Result<(), FileError> {
+    pub fn map(&mut self, map: &BodyMap, parts: &[usize], draw: &Sample) -> Result<(), FileError> {
         let row = |kind, index, group, x: &[f64]| MapRow {
             kind,
             index,

@@ -1,4 +1,4 @@
-//! Draw a tree of parts in plain text.
+//! Sample a tree of parts in plain text.
 
 use std::collections::BTreeMap;
 

@@ -8,7 +8,7 @@
 //! | 3 | [`quantise`] | pressures → [`Symbols`](quantise::Symbols): M × T, 0 to N − 1 | section 4.1 |
 //! | 4 | [`distance`] | symbols → [`Distances`](distance::Distances): M × M, bits | equations 23 to 26 |
 //! | 5 | [`body_map`] | distances → [`BodyMap`](body_map::BodyMap): M × d, bits | section 4.1 |
-//! | 6 | [`schema`] | body map → [`Draw`](schema::Draw)s: component of each sensor, tree | equations 1 to 22 |
+//! | 6 | [`schema`] | body map → [`Sample`](schema::Sample)s: component of each sensor, tree | equations 1 to 22 |
 //! | 7 | [`evaluate`] | draw, truth → [`Score`](evaluate::Score): adjusted Rand index, tree right or wrong | section 5.2 |
 //!
 //! Beside the paper, [`usable`] drops sensors that tell nothing, [`noise`] what is no touch, and [`co_motion`] finds rigid parts and how they are joined.

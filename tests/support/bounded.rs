@@ -1,6 +1,8 @@
 //! Run every stage on settings whose sizes are cut to what a test can afford.
 
-use bodyschema::pipeline::{Condition, StageError, cluster_and_score, feel, infer_and_score, map_felt};
+use bodyschema::pipeline::{
+    Condition, StageError, cluster_and_score, infer_and_score, map_sensed, simulate_and_sense,
+};
 use bodyschema::settings::Settings;
 use bodyschema::stages::schema::Model;
 
@@ -41,8 +43,8 @@ pub fn bounded(settings: &Settings) -> Settings {
 /// If a stage fails.
 pub fn run_every_stage(settings: &Settings) -> Result<(), StageError> {
     let dimension = settings.experiment.dimensions[0];
-    let felt = feel(settings, 1, &|| ())?;
-    let mapped = map_felt(&felt, settings, 1, &[dimension])?;
+    let felt = simulate_and_sense(settings, 1, &|| ())?;
+    let mapped = map_sensed(&felt, settings, 1, &[dimension])?;
     assert!(mapped.distances.values.iter().all(|distance| (0.0..=16.0).contains(distance)));
     for model in Model::ALL {
         let condition = Condition { model, coordination: settings.motion.coordination, dimension };

@@ -6,7 +6,7 @@ use crate::settings::Settings;
 use crate::stages::body_map::ClassicalScaling;
 use crate::stages::distance::Distances;
 use crate::stages::quantise::Symbols;
-use crate::stages::schema::{Draw, Model, best, infer};
+use crate::stages::schema::{Model, Sample, best, infer};
 use crate::stages::tree::{Edge, prim};
 
 /// Dimensions of the body map of the mixtures: those of the paper's headline.
@@ -45,7 +45,7 @@ fn entropy(series: &[u8], levels: usize) -> f64 {
 }
 
 /// The draw of highest log posterior of the DPGMM-LJ, and of the DPGMM with Prim's tree; `None` where there is no body map.
-pub fn mixtures(distances: &Distances, settings: &Settings, simulation: usize) -> Option<[Draw; 2]> {
+pub fn mixtures(distances: &Distances, settings: &Settings, simulation: usize) -> Option<[Sample; 2]> {
     let scaling = ClassicalScaling::new(distances, DIMENSIONS).ok()?;
     let map = scaling.coordinates(scaling.positive().clamp(1, DIMENSIONS)).ok()?;
     let draw = |model| {

@@ -8,7 +8,7 @@ use toml::{Table, Value};
 
 use super::super::compared::Compared;
 use super::super::design::merge;
-use super::super::draws::{Decides, Draws};
+use super::super::draws::{Draws, Level};
 use super::super::error::ExperimentError;
 use crate::analysis::published::claims;
 use crate::settings::Settings;
@@ -58,7 +58,7 @@ pub struct Factor {
     /// Name in tables and pictures.
     pub name: String,
     /// What it decides.
-    pub decides: Decides,
+    pub decides: Level,
     /// What the paper says of it, and where.
     pub paper: String,
     /// The values.

@@ -1,4 +1,4 @@
-//! Draw specifications evenly from all combinations of reasonable values.
+//! Sample specifications evenly from all combinations of reasonable values.
 //!
 //! Options come from an Owen-scrambled Sobol sequence (Burley 2020, "Practical hash-based Owen scrambling"), whose first 2^k
 //! points cover the values of each factor, and the pairs of any two, more evenly than independent draws would.
@@ -7,7 +7,7 @@ use std::collections::HashSet;
 
 use sobol_burley::sample;
 
-use super::super::draws::{Decides, Draws};
+use super::super::draws::{Draws, Level};
 use super::design::{Design, Factor};
 
 /// A reading of the paper: an option of each factor.
@@ -56,10 +56,10 @@ pub fn specifications(design: &Design) -> Vec<Drawn> {
 fn options(design: &Design, places: [usize; 4]) -> Vec<usize> {
     let option = |(dimension, factor): (usize, &Factor)| {
         let place = match factor.decides {
-            Decides::Movement => places[0],
-            Decides::Distances => places[1],
-            Decides::Map => places[2],
-            Decides::Inference => places[3],
+            Level::Movement => places[0],
+            Level::Distances => places[1],
+            Level::Map => places[2],
+            Level::Inference => places[3],
         };
         // The design was checked: sequences have 2^16 points and 2^8 dimensions.
         let uniform = sample(place as u32, dimension as u32, design.seed as u32);

@@ -3,7 +3,7 @@
 
 use serde::Serialize;
 
-use super::super::draws::Decides;
+use super::super::draws::Level;
 use super::design::{Design, Factor};
 use super::specification::Specification;
 use crate::analysis::claims::Verdict;
@@ -150,10 +150,10 @@ impl<'a> Evaluation<'a> {
                 self.all.iter().filter(|one| one.rows[at].value.is_some()).collect();
             let unit = |factor: &&Factor| -> Vec<usize> {
                 let unit = |(place, one): (usize, &&Specification)| match factor.decides {
-                    Decides::Movement => one.summary.movement,
-                    Decides::Distances => one.summary.distances,
-                    Decides::Map => one.summary.maps,
-                    Decides::Inference => place,
+                    Level::Movement => one.summary.movement,
+                    Level::Distances => one.summary.distances,
+                    Level::Map => one.summary.maps,
+                    Level::Inference => place,
                 };
                 with.iter().enumerate().map(unit).collect()
             };

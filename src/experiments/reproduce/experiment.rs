@@ -9,7 +9,7 @@ use super::super::batch::{Batch, Found, Outcome};
 use super::super::error::ExperimentError;
 use super::super::progress::progress;
 use super::super::task::{Keep, Task};
-use super::reading::OtherReading;
+use super::reading::OtherInterpretation;
 use super::run::{Run, preamble};
 use super::scenes;
 use crate::analysis::claims::{Judged, judge};
@@ -57,7 +57,7 @@ pub fn reproduce(run: &Run) -> Result<Finished, ExperimentError> {
     folder.remove(made_anew().chain(scenes::made_anew(run.out)))?;
     let checkpoints = Checkpoints::new(run.out, &(run.experiment, run.settings));
     let tasks = tasks(run);
-    let other = OtherReading::of(run, &tasks);
+    let other = OtherInterpretation::of(run, &tasks);
     let all = other.as_ref().map_or_else(|| tasks.clone(), |other| other.behind(&tasks));
     let bar = progress(Batch::length(&all), "movement".to_owned());
     let batch = Batch { out: run.out, checkpoints: &checkpoints, bar: &bar };

@@ -1,4 +1,4 @@
-//! Draw the headline by the other reading of the paper as well, on the same bodies.
+//! Sample the headline by the other reading of the paper as well, on the same bodies.
 
 use super::super::batch::Outcome;
 use super::super::task::{Keep, Task};
@@ -19,7 +19,7 @@ const EQUATIONS: &str = include_str!("../../../reproduce/equations.toml");
 
 /// The headline by the other reading of the paper. It does not count: where it fails, its claim says why, and the run goes
 /// on.
-pub struct OtherReading {
+pub struct OtherInterpretation {
     /// The reading.
     sampler: Sampler,
     /// One task for each simulation.
@@ -28,7 +28,7 @@ pub struct OtherReading {
     problem: Option<String>,
 }
 
-impl OtherReading {
+impl OtherInterpretation {
     /// The headline's condition by the reading that the run does not follow; `None` if the run has not this condition.
     pub fn of(run: &Run, tasks: &[Task]) -> Option<Self> {
         let condition = condition();

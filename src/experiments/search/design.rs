@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use toml::Table;
 
 use super::super::design::{SEARCH, flat, merge};
-use super::super::draws::{Decides, Draws};
+use super::super::draws::{Draws, Level};
 use super::super::error::ExperimentError;
 use crate::analysis::published::{Claim, Experiment, claims};
 use crate::numerics::rng::stream;
@@ -73,7 +73,7 @@ pub struct Candidate {
 pub struct Factor {
     #[expect(dead_code, reason = "for the reader of the design")]
     name: String,
-    decides: Decides,
+    decides: Level,
     options: Vec<Table>,
 }
 
@@ -140,13 +140,13 @@ impl Design {
             all.iter().map(|candidate| flat(&candidate.settings).join(",")).collect();
         let Draws { movements, distances, maps, inferences } = self.draws;
         for movement in 1..=movements {
-            let moved = self.draw(Decides::Movement, &Table::new(), [0, movement]);
+            let moved = self.draw(Level::Movement, &Table::new(), [0, movement]);
             for distance in 1..=distances {
-                let felt = self.draw(Decides::Distances, &moved, [movement, distance]);
+                let felt = self.draw(Level::Distances, &moved, [movement, distance]);
                 let felt_as = movement * distances + distance;
                 for inference in 1..=maps * inferences {
-                    let mapped = self.draw(Decides::Map, &felt, [felt_as, inference.div_ceil(inferences)]);
-                    let settings = self.draw(Decides::Inference, &mapped, [felt_as, inference]);
+                    let mapped = self.draw(Level::Map, &felt, [felt_as, inference.div_ceil(inferences)]);
+                    let settings = self.draw(Level::Inference, &mapped, [felt_as, inference]);
                     if known.insert(flat(&settings).join(",")) {
                         all.push(Candidate { name: format!("{movement}-{distance}-{inference}"), settings });
                     }
@@ -157,7 +157,7 @@ impl Design {
     }
 
     /// Lays an option of each factor of one kind, drawn at random, over `settings`.
-    fn draw(&self, decides: Decides, settings: &Table, [branch, number]: [usize; 2]) -> Table {
+    fn draw(&self, decides: Level, settings: &Table, [branch, number]: [usize; 2]) -> Table {
         let mut rng = stream(self.seed, branch, &format!("{decides:?}"), number);
         let mut settings = settings.clone();
         for factor in self.factor.iter().filter(|factor| factor.decides == decides) {

@@ -92,7 +92,7 @@ pub fn search(
             .zip(configurations.iter().zip(&outcomes))
             .map(|(candidate, (settings, outcome))| design.judge(candidate, settings, outcome))
             .collect();
-        // Movements that the step resolves come first. Stable: of equal scores the earlier candidate stays ahead.
+        // Movements that the step resolves come first. Stable: of equal scores the earlier candidate stays prefetch.
         tried.sort_by(|a, b| b.is_resolved().cmp(&a.is_resolved()).then(b.score.total_cmp(&a.score)));
         for (rank, tried) in tried.iter().enumerate() {
             scores.push(tried.score_row(at + 1, rank + 1));

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
-use super::best_draw;
+use super::best_sample;
 use super::frames::Frames;
 use super::scene::{Parts, Scene, TreeEdge};
 use super::sketch::sketch;
@@ -55,8 +55,8 @@ pub fn read(sources: &Sources, settings: &Settings) -> Result<Scene, FileError> 
             if found.join("labels.csv").is_file() { &["edges.csv"] } else { &["tree.csv", "edges.csv"] };
         let trees: Vec<PathBuf> = trees.iter().map(|name| found.join(name)).collect();
         Some(parts(&file, &trees, sensors)?)
-    } else if best_draw::is_in(found) {
-        Some(best_draw::read(found, sensors)?)
+    } else if best_sample::is_in(found) {
+        Some(best_sample::read(found, sensors)?)
     } else if let Some(estimate) = sources.estimate {
         return Err(FileError::new(
             estimate,

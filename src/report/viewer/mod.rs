@@ -1,6 +1,6 @@
 //! Show a body that moves, what its skin feels, its map and its tree, in a page that a browser draws without a network.
 
-mod best_draw;
+mod best_sample;
 pub mod folder;
 pub mod frames;
 pub mod page;

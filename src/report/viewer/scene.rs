@@ -8,7 +8,7 @@ use super::text::{Packed, base64};
 use crate::files::moved_body::{MovedBody, NUMBERS};
 use crate::stages::agent::Shape;
 use crate::stages::body_map::BodyMap;
-use crate::stages::schema::Draw;
+use crate::stages::schema::Sample;
 use crate::stages::tree::{Edge, Truth};
 
 /// Everything that is shown of one movement.
@@ -64,7 +64,7 @@ impl Parts {
     }
 
     /// Those of one draw, which says nothing of how sure an edge is.
-    pub fn of_draw(Draw { labels, tree, .. }: &Draw) -> Self {
+    pub fn of_draw(Sample { labels, tree, .. }: &Sample) -> Self {
         let edge = |&Edge { child, parent }: &Edge| TreeEdge { child, parent, confidence: None };
         Self { of: labels.iter().copied().map(Some).collect(), tree: tree.iter().map(edge).collect() }
     }

@@ -6,7 +6,7 @@
 //! belongs to the sensor, and w, of at most six numbers, is the motion of the part. Neither is known. They are found in
 //! turns by least squares over the sensors that feel something, and those that should but do not (censored regression; Tobin
 //! 1958). A start comes from differences between sensors that never feel at the same time, which are opposite to each other:
-//! principal components of these are linear in w. What no sensor can feel, such as the spin of a cylinder, is not in w. w is
+//! principal components of these are linear in w. What no sensor can simulate_and_sense, such as the spin of a cylinder, is not in w. w is
 //! known up to a linear map, which does not matter.
 //!
 //! Pressures that are also negative (of an incompressible medium behind a sensor, say) are roots with a sign; their principal

@@ -1,4 +1,4 @@
-//! Planar parts in a row, and what sensors feel, for tests.
+//! Planar parts in a row, and what sensors simulate_and_sense, for tests.
 
 use rand::RngExt;
 

@@ -151,7 +151,7 @@ mod tests {
     use super::*;
     use crate::numerics::rng::stream;
 
-    /// Motions of k numbers that wander, and the pressures of sensors with random c: T × k, and M series.
+    /// Motions of k numbers that simulate_movement, and the pressures of sensors with random c: T × k, and M series.
     fn felt(k: usize, sensors: usize, signed: bool) -> (DMatrix<f64>, Vec<Vec<f32>>) {
         let samples = 3000;
         let mut rng = stream(1, 1, "felt", k);

@@ -1,4 +1,4 @@
-//! Find the parts: sensors are on one part if one motion explains all that they feel, because a part is rigid.
+//! Find the parts: sensors are on one part if one motion explains all that they simulate_and_sense, because a part is rigid.
 //!
 //! In: pressures, and the distances between sensors. Out: the [part](RigidParts) of each sensor. The number of parts is found,
 //! too. Neighbours in the distances make small pieces, which nearly always are pieces of one part. Then, in turns, two sets of

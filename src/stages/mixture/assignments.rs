@@ -1,4 +1,4 @@
-//! Draw the component of each point given all components and their weights (equation 15).
+//! Sample the component of each point given all components and their weights (equation 15).
 //!
 //! Most components are far from most points. The squared distance of a point to a component is a sum of
 //! squares, so it is left as soon as it is known to be too large to matter. Where neighbours in the list of

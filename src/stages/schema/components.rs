@@ -1,4 +1,4 @@
-//! Draw (μ, Σ) of every component given its sensors and joints (equations 16 and 17).
+//! Sample (μ, Σ) of every component given its sensors and joints (equations 16 and 17).
 
 use nalgebra::{DMatrix, DVector};
 use rand::Rng;

@@ -2,10 +2,10 @@
 
 use rayon::prelude::*;
 
-use super::draw::Draw;
 use super::error::{InferenceError, MAX_LABELS, matrices_fit};
 use super::gibbs::{Chain, start_labels};
 use super::prior::prior;
+use super::sample::Sample;
 use super::settings::{Keep, Model, Sampler, Schema};
 use super::split_merge::{Neighbours, SplitMerge, Target, TreePosterior, tree_given};
 use crate::numerics::rng::{Stream, stream};
@@ -27,13 +27,13 @@ pub fn infer(
     seed: u64,
     simulation: usize,
     tick: &(dyn Fn() + Sync),
-) -> Result<Vec<Draw>, InferenceError> {
+) -> Result<Vec<Sample>, InferenceError> {
     check_size(map, settings)?;
     let points = Points::new(map);
     let prior = prior(&points, settings)?;
     let stage = format!("{} {}", model.name(), map.dims);
     let target = (settings.sampler == Sampler::SplitMerge).then(|| target(&points, &prior, settings, model));
-    let chains: Result<Vec<Vec<Draw>>, InferenceError> = (0..settings.chains)
+    let chains: Result<Vec<Vec<Sample>>, InferenceError> = (0..settings.chains)
         .into_par_iter()
         .map(|chain| {
             let mut rng = stream(seed, simulation, &stage, chain);
@@ -89,7 +89,7 @@ trait State {
     fn sweep(&mut self, rng: &mut Stream) -> Result<(), InferenceError>;
 
     /// The state as a draw of a chain after a sweep.
-    fn draw(&self, chain: usize, sweep: usize, rng: &mut Stream) -> Result<Draw, InferenceError>;
+    fn draw(&self, chain: usize, sweep: usize, rng: &mut Stream) -> Result<Sample, InferenceError>;
 }
 
 impl State for Chain<'_> {
@@ -97,8 +97,8 @@ impl State for Chain<'_> {
         Chain::sweep(self, rng)
     }
 
-    fn draw(&self, chain: usize, sweep: usize, _: &mut Stream) -> Result<Draw, InferenceError> {
-        Ok(Draw {
+    fn draw(&self, chain: usize, sweep: usize, _: &mut Stream) -> Result<Sample, InferenceError> {
+        Ok(Sample {
             chain,
             sweep,
             labels: self.labels.clone(),
@@ -114,8 +114,8 @@ impl State for SplitMerge<'_> {
         Ok(SplitMerge::sweep(self, rng)?)
     }
 
-    fn draw(&self, chain: usize, sweep: usize, rng: &mut Stream) -> Result<Draw, InferenceError> {
-        Ok(Draw {
+    fn draw(&self, chain: usize, sweep: usize, rng: &mut Stream) -> Result<Sample, InferenceError> {
+        Ok(Sample {
             chain,
             sweep,
             labels: self.labels.clone(),
@@ -148,7 +148,7 @@ fn run_chain(
     mut state: impl State,
     settings: &Schema,
     rng: &mut Stream,
-) -> Result<Vec<Draw>, InferenceError> {
+) -> Result<Vec<Sample>, InferenceError> {
     let mut draws = Vec::new();
     for sweep in 1..=settings.sweeps {
         state.sweep(rng)?;

@@ -1,4 +1,4 @@
-//! Draw the latent joint between two Gaussian components, and weigh that edge of the tree (equations 13, 14, 18 and
+//! Sample the latent joint between two Gaussian components, and weigh that edge of the tree (equations 13, 14, 18 and
 //! 22).
 //!
 //! A joint q is a point that both components generate, so it is drawn from the product of their

@@ -1,4 +1,4 @@
-//! Draw the latent joints q and set the tree C over the active components (equations 18 and 22).
+//! Sample the latent joints q and set the tree C over the active components (equations 18 and 22).
 
 use std::collections::BTreeMap;
 

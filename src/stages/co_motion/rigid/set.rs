@@ -22,7 +22,7 @@ pub struct Set {
     pub sample: Vec<usize>,
     /// Their motion.
     pub fit: Fit,
-    /// What it takes to tell what they feel, for each time, in nats; see the head of this file.
+    /// What it takes to tell what they simulate_and_sense, for each time, in nats; see the head of this file.
     pub cost: f64,
 }
 

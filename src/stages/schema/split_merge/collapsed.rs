@@ -1,4 +1,4 @@
-//! Draw labels one by one, with the Gaussians of all clusters integrated out.
+//! Sample labels one by one, with the Gaussians of all clusters integrated out.
 //!
 //! A point that has the wrong label widens the Gaussian of its cluster, and stays. Without its own share in it, it leaves.
 

@@ -1,4 +1,4 @@
-//! Draw the tree over the parts of a given partition, with the probability of each edge.
+//! Sample the tree over the parts of a given partition, with the probability of each edge.
 
 use std::collections::BTreeMap;
 

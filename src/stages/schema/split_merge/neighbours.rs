@@ -1,4 +1,4 @@
-//! Draw the second point of a split–merge move: half of the time anywhere, half of the time near the first.
+//! Sample the second point of a split–merge move: half of the time anywhere, half of the time near the first.
 //!
 //! That depends on the points alone, not on the state of a chain, so that it does not enter the acceptance ratio. Clusters
 //! that should be one lie side by side, and a pair of neighbours is likely to have a point in each.

@@ -6,13 +6,13 @@ use serde::{Deserialize, Serialize};
 
 use crate::files::checkpoint::Checkpoints;
 use crate::files::{FileError, npy, sha256, tables};
-use crate::pipeline::{Body, Facts, MappedBody};
+use crate::pipeline::{Body, Facts, Mapped};
 use crate::settings::Settings;
 use crate::stages::body_map::BodyMaps;
 
 /// What is known of a body whose files are results.
 #[derive(Debug, Clone)]
-pub struct Kept {
+pub struct Artifacts {
     /// How well its sensors could be mapped.
     pub facts: Facts,
     /// Its files, within the folder of results.
@@ -20,7 +20,7 @@ pub struct Kept {
 }
 
 /// Where the files of one body are.
-pub struct BodyFiles<'a> {
+pub struct ArtifactFiles<'a> {
     /// The folder of results.
     pub out: &'a Path,
     /// Finished work.
@@ -36,13 +36,13 @@ struct MappedFiles {
     files: Vec<(String, String)>,
 }
 
-impl BodyFiles<'_> {
+impl ArtifactFiles<'_> {
     /// Writes the files, and a checkpoint with their hashes.
     ///
     /// # Errors
     /// If one cannot be written.
-    pub fn write(&self, mapped: MappedBody, with_distances: bool) -> Result<(Body, Kept), FileError> {
-        let MappedBody { body, distances, facts } = mapped;
+    pub fn write(&self, mapped: Mapped, with_distances: bool) -> Result<(Body, Artifacts), FileError> {
+        let Mapped { body, distances, facts } = mapped;
         let folder = self.out.join(self.name);
         let mut names = vec!["labels.csv".to_owned(), "tree.csv".to_owned()];
         tables::write_truth(&folder.join(&names[0]), &folder.join(&names[1]), &body.truth)?;
@@ -62,7 +62,7 @@ impl BodyFiles<'_> {
     }
 
     /// The body that an earlier run with these settings wrote, if its files are still what they were.
-    pub fn recall(&self, settings: &Settings) -> Option<(Body, Kept)> {
+    pub fn recall(&self, settings: &Settings) -> Option<(Body, Artifacts)> {
         let finished: MappedFiles = self.checkpoints.recall(&format!("{}/body", self.name))?;
         let folder = self.out.join(self.name);
         for (name, hash) in &finished.files {
@@ -83,8 +83,8 @@ impl BodyFiles<'_> {
         Some((Body { truth, maps, resolution }, self.kept(finished)))
     }
 
-    fn kept(&self, MappedFiles { facts, files }: MappedFiles) -> Kept {
+    fn kept(&self, MappedFiles { facts, files }: MappedFiles) -> Artifacts {
         let files = files.into_iter().map(|(name, _)| format!("{}/{name}", self.name)).collect();
-        Kept { facts, files }
+        Artifacts { facts, files }
     }
 }

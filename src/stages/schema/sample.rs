@@ -7,7 +7,7 @@ use crate::stages::tree::Edge;
 
 /// One draw of a body schema: the state of a chain after a sweep (section 3).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Draw {
+pub struct Sample {
     /// Number of the chain, from 0.
     pub chain: usize,
     /// Number of the sweep after which the state was kept, from 1.
@@ -26,7 +26,7 @@ pub struct Draw {
 ///
 /// # Panics
 /// If `draws` is empty.
-pub fn best(draws: &[Draw]) -> &Draw {
+pub fn best(draws: &[Sample]) -> &Sample {
     draws
         .iter()
         .reduce(|kept, next| if next.log_posterior > kept.log_posterior { next } else { kept })
@@ -35,8 +35,8 @@ pub fn best(draws: &[Draw]) -> &Draw {
 
 /// One draw for each chain, with all sensors in one component: the answer where no sensor differs from another, so that
 /// there is no body map to infer from.
-pub fn one_part(sensors: usize, settings: &Schema) -> Vec<Draw> {
-    let draw = |chain| Draw {
+pub fn one_part(sensors: usize, settings: &Schema) -> Vec<Sample> {
+    let draw = |chain| Sample {
         chain,
         sweep: settings.sweeps,
         labels: vec![0; sensors],

@@ -10,7 +10,7 @@ use crate::files::{FileError, npy};
 
 /// A row of samples.csv, of which a draw is known by its chain and sweep.
 #[derive(Deserialize)]
-struct Sample {
+struct SampleRow {
     chain: usize,
     sweep: Option<usize>,
     log_posterior: f64,
@@ -39,7 +39,7 @@ pub fn is_in(folder: &Path) -> bool {
 /// If a file cannot be read, or the files do not fit each other.
 pub fn read(folder: &Path, sensors: usize) -> Result<Parts, FileError> {
     let [samples, assignments, trees] = FILES.map(|name| folder.join(name));
-    let draws: Vec<Sample> = read_rows(&samples)?;
+    let draws: Vec<SampleRow> = read_rows(&samples)?;
     let (rows, columns, labels) = npy::read_assignments(&assignments)?;
     if (rows, columns) != (draws.len(), sensors) {
         let message = format!(
@@ -51,7 +51,7 @@ pub fn read(folder: &Path, sensors: usize) -> Result<Parts, FileError> {
     let better =
         |best: usize, at: usize| if draws[at].log_posterior > draws[best].log_posterior { at } else { best };
     let best = (0..draws.len()).fold(0, better);
-    let Sample { chain, sweep, .. } = draws[best];
+    let SampleRow { chain, sweep, .. } = draws[best];
     let own: Vec<Joined> = read_rows(&trees)?;
     let own = own.into_iter().filter(|row| (row.chain, row.sweep) == (chain, sweep));
     let of: Vec<Option<usize>> = labels[best * sensors..][..sensors].iter().copied().map(Some).collect();

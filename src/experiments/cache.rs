@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::pipeline::{FeltBody, MappedBody, Metric, feel_movement, map_distances, quantise_felt};
+use crate::pipeline::{Mapped, Metric, Sensed, map_distances, measure_distances, sense_movement};
 use crate::settings::Settings;
 use crate::stages::simulate::Trajectory;
 
@@ -57,14 +57,14 @@ impl<T> Last<T> {
 
 /// The last results of the stages, for the tasks that come next: half a gigabyte at full size.
 #[derive(Default)]
-pub struct Shared {
+pub struct StageCache {
     movement: Last<Result<Trajectory, String>>,
-    felt: Last<FeltBody>,
+    felt: Last<Sensed>,
     metric: Last<Metric>,
-    mapped: Last<Result<MappedBody, String>>,
+    mapped: Last<Result<Mapped, String>>,
 }
 
-impl Shared {
+impl StageCache {
     /// Stages 1 to 5. Calls `simulate` if it needs another movement than the last.
     ///
     /// # Errors
@@ -75,12 +75,12 @@ impl Shared {
         simulation: usize,
         dims: &[usize],
         simulate: impl FnOnce() -> Result<Trajectory, String>,
-    ) -> Result<MappedBody, String> {
+    ) -> Result<Mapped, String> {
         let keys = Keys::of(settings, simulation, dims);
         let movement = self.movement.get(keys.movement, simulate);
         let trajectory = movement.as_ref().map_err(String::clone)?;
-        let felt = self.felt.get(keys.pressures, || feel_movement(trajectory, settings));
-        let metric = self.metric.get(keys.distances, || quantise_felt(felt, &settings.quantise));
+        let felt = self.felt.get(keys.pressures, || sense_movement(trajectory, settings));
+        let metric = self.metric.get(keys.distances, || measure_distances(felt, &settings.quantise));
         let mapped = self.mapped.get(keys.maps, || {
             map_distances(felt, metric, settings, simulation, dims).map_err(|error| error.to_string())
         });

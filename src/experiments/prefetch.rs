@@ -7,11 +7,11 @@ use super::task::{Task, TaskProgress};
 use crate::stages::simulate::Trajectory;
 
 /// Movements that are simulated or wait at a time, at most: each takes some 50 MB.
-const MOST_AHEAD: usize = 8;
+const MOST_PREFETCHED: usize = 8;
 
 /// The movements of a list of tasks, of which the next ones, as many as there are threads, are simulated while the last is
 /// inferred from. A simulation has one thread, so that one at a time would leave the others idle.
-pub struct Ahead<'scope, 'env> {
+pub struct Prefetch<'scope, 'env> {
     scope: &'scope Scope<'scope, 'env>,
     tasks: &'env [Task],
     progress: &'env [TaskProgress<'env>],
@@ -19,7 +19,7 @@ pub struct Ahead<'scope, 'env> {
     begun: VecDeque<(usize, ScopedJoinHandle<'scope, Result<Trajectory, String>>)>,
 }
 
-impl<'scope, 'env> Ahead<'scope, 'env> {
+impl<'scope, 'env> Prefetch<'scope, 'env> {
     /// Of some tasks, those with the same movement side by side.
     pub fn new(
         scope: &'scope Scope<'scope, 'env>,
@@ -57,7 +57,7 @@ impl<'scope, 'env> Ahead<'scope, 'env> {
     fn begin_after(&mut self, at: usize) {
         let threads = rayon::current_num_threads();
         let (tasks, progress) = (self.tasks, self.progress);
-        let most = if threads > 1 { threads.min(MOST_AHEAD) } else { 0 };
+        let most = if threads > 1 { threads.min(MOST_PREFETCHED) } else { 0 };
         while self.begun.len() < most {
             let last = self.begun.back().map_or(at, |(last, _)| *last);
             let Some(next) = (last + 1..tasks.len()).find(|&next| !tasks[next].shares_movement(&tasks[last]))
