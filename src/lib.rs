@@ -58,6 +58,7 @@ pub mod recording;
 mod report;
 pub mod settings;
 pub mod stages;
+mod study;
 
 #[doc(hidden)]
 pub mod cli;

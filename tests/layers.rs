@@ -8,7 +8,7 @@ use std::fs;
 use std::path::Path;
 
 /// The rooms from the ground up: each imports only those before it.
-const ROOMS: [&str; 11] = [
+const ROOMS: [&str; 12] = [
     "numerics",
     "stages",
     "files",
@@ -19,6 +19,7 @@ const ROOMS: [&str; 11] = [
     "analysis",
     "report",
     "experiments",
+    "study",
     "cli",
 ];
 

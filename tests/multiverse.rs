@@ -1,5 +1,5 @@
-//! A multiverse: shards give the bytes of one run, what was stopped goes on, a failure is a result, and what cannot be done is
-//! refused in one line.
+//! Studies of drawn configurations: shards give the bytes of one run, what was stopped continues, a failure is a result, and what
+//! cannot be done is refused in one line.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -8,6 +8,7 @@ use std::process::{Command, Output};
 
 /// Bodies of few sensors, for seconds. One of the two controllers is unstable.
 const DESIGN: &str = r#"
+title = "A multiverse"
 seed = 100
 groups = ["levels"]
 [draws]
@@ -30,7 +31,7 @@ experiment = "exp1"
 label = "ARI"
 [[factor]]
 name = "gains"
-decides = "movement"
+level = "movement"
 paper = "nothing"
 [[factor.option]]
 label = "gentle"
@@ -42,7 +43,7 @@ why = "it is not"
 settings = { motion = { controller = "torque", stiffness = 1e5, damping = 1e5 } }
 [[factor]]
 name = "levels"
-decides = "distances"
+level = "distances"
 paper = "N"
 [[factor.option]]
 label = "two"
@@ -54,7 +55,7 @@ why = "more"
 settings = { quantise = { levels = 4 } }
 [[factor]]
 name = "scaled"
-decides = "map"
+level = "map"
 paper = "the distances"
 [[factor.option]]
 label = "distances"
@@ -66,7 +67,7 @@ why = "as the code does"
 settings = { map = { of = "rows" } }
 [[factor]]
 name = "start"
-decides = "inference"
+level = "inference"
 paper = "nothing"
 [[factor.option]]
 label = "uniform"
@@ -116,69 +117,83 @@ fn shards_give_the_bytes_of_one_run_and_a_failure_is_a_result() {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name);
     fs::write(at("design.toml"), DESIGN).unwrap();
-    succeed(folder.path(), "multiverse --design design.toml --jobs 1 --out whole");
+    succeed(folder.path(), "study design.toml --jobs 1 --out whole");
     let whole = files(&at("whole"));
+    assert!(!at("whole/checkpoints").exists());
 
-    let specifications = rows(&at("whole/specifications.csv"));
-    assert!(specifications.len() > 8 && specifications.len() <= 16, "{}", specifications.len());
-    for row in &specifications {
+    let configurations = rows(&at("whole/configurations.csv"));
+    assert!(configurations.len() > 8 && configurations.len() <= 16, "{}", configurations.len());
+    for row in &configurations {
         // What is unstable has a reason, and no value.
         assert_eq!(row["gains"] == "wild", !row["failure"].is_empty(), "{row:?}");
         assert_eq!(row["gains"] == "wild", row["failed"] != "0");
     }
     // An even draw has both options of every factor, and of the first as often as can be.
-    let wild = specifications.iter().filter(|row| row["gains"] == "wild").count();
-    assert!((4..=specifications.len() - 4).contains(&wild), "{wild}");
-    let claims = rows(&at("whole/multiverse.csv"));
-    assert_eq!(claims.len(), 2 * specifications.len());
+    let wild = configurations.iter().filter(|row| row["gains"] == "wild").count();
+    assert!((4..=configurations.len() - 4).contains(&wild), "{wild}");
+    let claims = rows(&at("whole/study.csv"));
+    assert_eq!(claims.len(), 2 * configurations.len());
     assert_eq!(claims.iter().filter(|row| row["value"].is_empty()).count(), 2 * wild);
     let shares = rows(&at("whole/shares.csv"));
     let all = shares.iter().find(|row| row["group"] == "all" && row["claim"] == "number-of-parts").unwrap();
-    assert_eq!(all["n"].parse::<usize>().unwrap(), specifications.len());
-    assert_eq!(all["with_value"].parse::<usize>().unwrap(), specifications.len() - wild);
-    for name in ["multiverse.md", "variance.csv", "figures/number-of-parts.svg"] {
+    assert_eq!(all["n"].parse::<usize>().unwrap(), configurations.len());
+    assert_eq!(all["with_value"].parse::<usize>().unwrap(), configurations.len() - wild);
+    for name in ["study.md", "variance.csv", "figures/number-of-parts.svg"] {
         let text = String::from_utf8(whole[name].clone()).unwrap();
         assert!(!text.contains("NaN") && !text.is_empty(), "{name}");
     }
 
     // Shards, one of them stopped and run again, in any order and with any number of threads.
     let shard = |shard: &str, jobs: usize| {
-        succeed(
-            folder.path(),
-            &format!("multiverse --design design.toml --shard {shard} --jobs {jobs} --out shards"),
-        );
+        succeed(folder.path(), &format!("study design.toml --shard {shard} --jobs {jobs} --out shards"));
     };
     shard("3/3", 2);
-    let finished = || fs::read_dir(at("shards/specifications")).unwrap().map(|entry| entry.unwrap().path());
-    let lost = finished().min().unwrap();
-    fs::remove_dir_all(&lost).unwrap();
+    let movements = at("shards/checkpoints/movements");
+    let finished = fs::read_dir(&movements).unwrap().map(|entry| entry.unwrap().path());
+    fs::remove_file(finished.min().unwrap()).unwrap();
     // What a killed process may leave.
-    fs::create_dir_all(at("shards/specifications/000001.new-1-2.partial")).unwrap();
     fs::create_dir_all(at("shards/checkpoints/of-a-killed-shard")).unwrap();
+    fs::write(movements.join("half.json.bodyschema.partial"), "{").unwrap();
     shard("1/3", 1);
-    let early = bodyschema(folder.path(), "multiverse --design design.toml --gather --out shards");
+    let early = bodyschema(folder.path(), "study design.toml --gather --out shards");
     let message = String::from_utf8(early.stderr).unwrap();
     assert!(early.status.code() == Some(2) && message.contains("lacks"), "{message}");
-    assert_eq!(message.lines().count(), 1, "{message}");
+    assert_eq!(message.lines().count(), 2, "{message}");
     for part in ["2/3", "3/3"] {
         shard(part, 3);
     }
-    succeed(folder.path(), "multiverse --design design.toml --gather --out shards");
+    succeed(folder.path(), "study design.toml --gather --out shards");
     assert_eq!(files(&at("shards")), whole);
-    assert!(!at("shards/checkpoints").exists() && finished().all(|path| path.extension().is_none()));
+    assert!(!at("shards/checkpoints").exists());
 
     // Its page can be made again from the folder alone.
-    fs::remove_file(at("shards/multiverse.md")).unwrap();
+    fs::remove_file(at("shards/study.md")).unwrap();
     succeed(folder.path(), "plot shards");
     assert_eq!(files(&at("shards")), whole);
 
     // Any one can be run again by its number, and by its settings.
-    succeed(folder.path(), "multiverse --design design.toml --only 2 --out two");
-    for (name, bytes) in files(&at("two/specifications")) {
-        assert_eq!(bytes, whole[&format!("specifications/{name}")], "{name}");
-    }
-    succeed(folder.path(), "simulate --settings two/specifications/000002/settings.toml --out body");
+    succeed(folder.path(), "study design.toml --only 2 --out two");
+    let second = |all: Vec<BTreeMap<String, String>>| {
+        all.into_iter().filter(|row| row["configuration"] == "2").collect::<Vec<_>>()
+    };
+    assert_eq!(rows(&at("two/study.csv")), second(claims));
+    assert_eq!(rows(&at("two/configurations.csv")), second(configurations));
+    succeed(folder.path(), "simulate --settings two/settings.toml --out body");
     succeed(folder.path(), "verify whole");
+}
+
+#[test]
+fn another_seed_gives_other_movements_and_is_kept_with_the_design() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    fs::write(at("base.toml"), DESIGN).unwrap();
+    let over = "extends = \"base.toml\"\n[draws]\nmovements = 1\ndistances = 1\n";
+    fs::write(at("small.toml"), over).unwrap();
+    succeed(folder.path(), "study small.toml --only 1 --out first");
+    succeed(folder.path(), "study small.toml --only 1 --seed 200 --out second");
+    assert_ne!(fs::read(at("first/study.csv")).unwrap(), fs::read(at("second/study.csv")).unwrap());
+    succeed(folder.path(), "study second/design.toml --only 1 --out third");
+    assert_eq!(fs::read(at("second/study.csv")).unwrap(), fs::read(at("third/study.csv")).unwrap());
 }
 
 #[test]
@@ -187,7 +202,7 @@ fn what_cannot_be_done_is_refused_in_one_line() {
     let at = |name: &str| folder.path().join(name);
     let refused = |design: &str, arguments: &str, expected: &str| {
         fs::write(at("design.toml"), design).unwrap();
-        let output = bodyschema(folder.path(), &format!("multiverse --design design.toml {arguments}"));
+        let output = bodyschema(folder.path(), &format!("study design.toml {arguments}"));
         let message = String::from_utf8(output.stderr).unwrap();
         assert_eq!(output.status.code(), Some(2), "{message}");
         assert!(message.contains(expected), "{message:?} lacks {expected:?}");
@@ -200,7 +215,32 @@ fn what_cannot_be_done_is_refused_in_one_line() {
     one_line(refused(&DESIGN.replace("number-of-parts", "beauty"), "--out out", "names `beauty`"));
     one_line(refused(&DESIGN.replace("levels = 2 }", "levels = 1 }"), "--out out", "quantise.levels"));
     one_line(refused(&DESIGN.replace("[\"levels\"]", "[\"fins\"]"), "--out out", "groups by `fins`"));
-    one_line(refused(DESIGN, "--only 99 --out out", "there is no specification 99"));
+    one_line(refused(
+        &DESIGN.replace("level = \"map\"", "level = \"mop\""),
+        "--out out",
+        "`movement`, `distances`, `map`",
+    ));
+    one_line(refused(&DESIGN.replace("level = \"map\"\n", ""), "--out out", "`scaled` without `level`"));
+    one_line(refused(
+        &DESIGN.replace("seed = 100", "seed = 100\nvary = \"grid\""),
+        "--out out",
+        "one of these",
+    ));
+    one_line(refused(
+        &DESIGN.replace("seed = 100", "seed = 100\nsections = [\"factors\"]"),
+        "--out out",
+        "one-at-a-time",
+    ));
+    one_line(refused(
+        &DESIGN.replace("seed = 100", "seed = 100\nsections = [\"beauty\"]"),
+        "--out out",
+        "`values`",
+    ));
+    one_line(refused(
+        DESIGN,
+        "--only 99 --out out",
+        "there is no configuration `99`; give a number from 1 to",
+    ));
     one_line(refused(&DESIGN.replace("movements = 4", "movements = 70000"), "--out out", "more than 65536"));
     one_line(refused(
         &DESIGN.replace("name = \"start\"", "name = \"failed\""),
@@ -220,9 +260,14 @@ fn what_cannot_be_done_is_refused_in_one_line() {
     one_line(refused(DESIGN, "--out other", "another design"));
     one_line(refused(DESIGN, "--gather --out other", "another design"));
     one_line(refused(DESIGN, "--gather --out empty", "design.toml"));
-    succeed(folder.path(), "multiverse --design design.toml --out damaged");
-    let claims = at("damaged/specifications/000002/claims.csv");
+    succeed(folder.path(), "study design.toml --only 1 --out damaged");
+    let claims = at("damaged/study.csv");
     let cut = fs::read_to_string(&claims).unwrap().lines().take(2).collect::<Vec<_>>().join("\n");
     fs::write(&claims, cut).unwrap();
-    one_line(refused(DESIGN, "--gather --out damaged", "run it again with --only 2"));
+    let damaged = bodyschema(folder.path(), "plot damaged");
+    let message = String::from_utf8(damaged.stderr).unwrap();
+    assert!(
+        damaged.status.code() == Some(2) && message.contains("study.csv: is not of the design"),
+        "{message}"
+    );
 }

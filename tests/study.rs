@@ -1,4 +1,4 @@
-//! Studies: what they write, that they go on where they were, and how they refuse what is no design.
+//! Studies: what they write, that they continue where they were, and how they refuse what is no design.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -17,72 +17,71 @@ experiment = { simulations = 2, dimensions = [2, 4], coordinations = [0.5], dime
 baselines = { clusters = [5] }
 ";
 
-fn sensitivity_design() -> String {
+fn one_at_a_time() -> String {
     format!(
-        "seed = 3
+        "title = \"Levels and gains\"
+seed = 3
+vary = \"one-at-a-time\"
 [settings]
 {SMALL}
-[[part]]
+[[factor]]
 name = \"levels\"
 title = \"Levels\"
 paper = \"N (4.1)\"
 settings = [\"quantise.levels\"]
 why = \"Chosen\"
-values = [{{ quantise = {{ levels = 3 }} }}]
-[[part]]
+option = [{{ settings = {{ quantise = {{ levels = 3 }} }} }}]
+[[factor]]
 name = \"gains\"
 title = \"Gains\"
 paper = \"Linear (5.1)\"
 settings = [\"motion.stiffness\", \"motion.controller\"]
 why = \"Chosen\"
-values = [{{ motion = {{ controller = \"torque\", stiffness = 0.2 }} }}, {{ motion = {{ controller = \"torque\", stiffness = 1e5, damping = 1e5 }} }}]
+option = [{{ settings = {{ motion = {{ controller = \"torque\", stiffness = 0.2 }} }} }}, {{ settings = {{ motion = {{ controller = \"torque\", stiffness = 1e5, damping = 1e5 }} }} }}]
 "
     )
 }
 
-fn search_design() -> String {
-    let round = |candidates: usize, simulations: usize| {
-        let settings = SMALL.replace("simulations = 2", &format!("simulations = {simulations}"));
-        format!("[[round]]\ncandidates = {candidates}\n[round.settings]\n{settings}")
-    };
+/// Two gains and two ways to weigh edges, all combinations, of which the best two go on to a second round.
+fn ranked() -> String {
+    let more = SMALL.replace("simulations = 2", "simulations = 3");
     format!(
-        "seed = 1
-[draws]
-movements = 1
-distances = 2
-inferences = 1
-[[score]]
-claim = \"number-of-parts\"
+        "title = \"A search\"
+seed = 1
+vary = \"grid\"
+sections = [\"ranking\", \"trade-offs\", \"shares\"]
+[settings]
+{SMALL}
+[next]
+keep = 2
+[next.settings]
+{more}
+[[claim]]
+id = \"number-of-parts\"
 experiment = \"exp1\"
+label = \"parts\"
 weight = 1
 slack = 5
-[[score]]
-claim = \"best-coordination\"
+[[claim]]
+id = \"best-coordination\"
 experiment = \"exp2\"
+label = \"best p\"
 weight = 1
 slack = 0.5
-{}{}
-[[start]]
-name = \"gentle\"
-settings = {{ quantise = {{ levels = 3 }}, motion = {{ controller = \"torque\", stiffness = 0.07, damping = 0.03 }} }}
-[[start]]
-name = \"unstable\"
-settings = {{ motion = {{ controller = \"torque\", stiffness = 1e5, damping = 1e5 }} }}
 [[factor]]
 name = \"gains\"
-decides = \"movement\"
-options = [{{ motion = {{ controller = \"torque\", stiffness = 1.1, damping = 0.5 }} }}]
+paper = \"Linear (5.1)\"
+option = [{{ label = \"gentle\", settings = {{ quantise = {{ levels = 3 }}, motion = {{ controller = \"torque\", stiffness = 0.07, damping = 0.03 }} }} }}, {{ label = \"unstable\", settings = {{ motion = {{ controller = \"torque\", stiffness = 1e5, damping = 1e5 }} }} }}]
 [[factor]]
 name = \"edges\"
-decides = \"inference\"
-options = [{{ schema = {{ edge_weight = \"collapsed\" }} }}]
-",
-        round(4, 1),
-        round(2, 2)
+paper = \"(13)\"
+option = [{{ settings = {{ schema = {{ edge_weight = \"collapsed\" }} }} }}, {{ settings = {{ schema = {{ edge_weight = \"pairwise\" }} }} }}]
+"
     )
 }
 
-fn comparison_design() -> String {
+fn named() -> String {
+    let gentle = "motion = { controller = \"torque\", stiffness = 0.07, damping = 0.03 }";
     format!(
         "title = \"Levels\"
 about = \"How many levels.\"
@@ -99,13 +98,13 @@ experiment = \"exp2\"
 label = \"best p\"
 [[configuration]]
 name = \"gentle\"
-settings = {{ motion = {{ controller = \"torque\", stiffness = 0.07, damping = 0.03 }} }}
+settings = {{ {gentle} }}
 [[configuration]]
 name = \"three\"
-settings = {{ quantise = {{ levels = 3 }} }}
+settings = {{ quantise = {{ levels = 3 }}, {gentle} }}
 [[configuration]]
 name = \"the same\"
-settings = {{}}
+settings = {{ {gentle} }}
 [[configuration]]
 name = \"unstable\"
 settings = {{ motion = {{ controller = \"torque\", stiffness = 1e5, damping = 1e5 }} }}
@@ -125,6 +124,10 @@ fn succeed(folder: &Path, arguments: &str) -> String {
     let output = bodyschema(folder, arguments);
     assert_eq!(output.status.code(), Some(0), "{output:?}");
     String::from_utf8(output.stderr).unwrap()
+}
+
+fn rows(path: &Path) -> Vec<BTreeMap<String, String>> {
+    csv::Reader::from_path(path).unwrap().deserialize().map(Result::unwrap).collect()
 }
 
 /// The files of a folder but its checkpoints, by name.
@@ -148,119 +151,105 @@ fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
 }
 
 #[test]
-fn a_study_says_what_each_value_does_goes_on_where_it_was_and_hangs_on_no_number_of_threads() {
+fn a_study_of_one_factor_at_a_time_says_what_each_value_does_and_continues_where_it_was() {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name);
-    fs::write(at("design.toml"), sensitivity_design()).unwrap();
-    succeed(folder.path(), "sensitivity --design design.toml --jobs 1 --out one");
+    fs::write(at("design.toml"), one_at_a_time()).unwrap();
+    succeed(folder.path(), "study design.toml --jobs 1 --out one");
     let one = files(&at("one"));
     assert_eq!(
         one.keys().map(String::as_str).collect::<Vec<_>>(),
         [
+            "configurations.csv",
             "design.toml",
             "figures/gains.svg",
             "figures/levels.svg",
             "manifest.json",
-            "sensitivity.csv",
-            "sensitivity.md"
+            "measures.csv",
+            "study.csv",
+            "study.md"
         ]
     );
-    let page = fs::read_to_string(at("one/sensitivity.md")).unwrap();
+    let page = fs::read_to_string(at("one/study.md")).unwrap();
     assert!(page.contains("| levels = 3 |") && page.contains("2 simulations failed: "), "{page}");
     assert!(!page.contains("NaN"));
-    let mut table = csv::Reader::from_path(at("one/sensitivity.csv")).unwrap();
-    let rows: Vec<BTreeMap<String, String>> = table.deserialize().map(Result::unwrap).collect();
+    let rows = rows(&at("one/measures.csv"));
     // Of the default and three values: two mixtures at two d, and another p; five measures each.
     assert_eq!(rows.len(), 4 * 5 * 5);
     for row in &rows {
-        assert_eq!(
-            row["difference"].is_empty(),
-            row["part"] == "default" || row["estimate"].is_empty() || {
-                let same = |other: &&BTreeMap<String, String>| {
-                    other["part"] == "default"
-                        && ["coordination", "dimension", "model", "measure"]
-                            .iter()
-                            .all(|key| other[*key] == row[*key])
-                };
-                rows.iter().find(same).unwrap()["estimate"].is_empty()
-            }
-        );
-        assert_eq!(row["failed"] == "2", row["value"].contains("damping"));
+        let same = |other: &&BTreeMap<String, String>| {
+            other["configuration"] == "1"
+                && ["coordination", "dimension", "model", "measure"]
+                    .iter()
+                    .all(|key| other[*key] == row[*key])
+        };
+        let base = rows.iter().find(same).unwrap();
+        let no_change = row["configuration"] == "1" || row["value"].is_empty() || base["value"].is_empty();
+        assert_eq!(row["change"].is_empty(), no_change, "{row:?}");
+        assert_eq!(row["failed"] == "2", row["configuration"] == "4", "{row:?}");
     }
 
-    // A part is the same alone; what it shares with the whole study is taken from there.
-    let told = succeed(folder.path(), "sensitivity --design design.toml --only levels --jobs 3 --out one");
+    // A factor is the same alone, and what is run after it continues from there.
+    succeed(folder.path(), "study design.toml --only levels --jobs 3 --out part");
+    let part = fs::read_to_string(at("part/study.md")).unwrap();
+    assert!(part.contains("| levels = 3 |") && !part.contains("Gains"), "{part}");
+    let told = succeed(folder.path(), "study design.toml --jobs 3 --out part");
     assert!(told.contains("continuing"), "{told}");
-    let part = fs::read_to_string(at("one/sensitivity.md")).unwrap();
-    assert!(part.contains("| levels = 3 |") && !part.contains("Gains"));
-    // Half of the checkpoints are lost.
-    let tasks = fs::read_dir(at("one/checkpoints")).unwrap().map(Result::unwrap);
-    tasks.step_by(2).for_each(|task| fs::remove_dir_all(task.path()).unwrap());
-    succeed(folder.path(), "sensitivity --design design.toml --jobs 3 --out one");
-    assert_eq!(files(&at("one")), one);
+    assert_eq!(files(&at("part")), one);
 
-    fs::remove_file(at("one/sensitivity.md")).unwrap();
+    fs::remove_file(at("one/study.md")).unwrap();
     fs::remove_dir_all(at("one/figures")).unwrap();
     succeed(folder.path(), "plot one");
     assert_eq!(files(&at("one")), one);
 }
 
 #[test]
-fn a_search_keeps_the_best_and_shows_which_claims_hold_together() {
+fn a_ranking_keeps_the_best_for_the_next_round_and_shows_which_claims_hold_together() {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name);
-    fs::write(at("design.toml"), search_design()).unwrap();
-    succeed(folder.path(), "search --design design.toml --jobs 1 --out one");
-    let one = files(&at("one"));
-    assert_eq!(
-        one.keys().map(String::as_str).collect::<Vec<_>>(),
-        ["best.toml", "credits.csv", "design.toml", "manifest.json", "next.toml", "scores.csv", "search.md"]
-    );
-    let scores = String::from_utf8(one["scores.csv"].clone()).unwrap();
-    let row = |start: &str| scores.lines().find(|line| line.starts_with(start)).unwrap().to_owned();
-    // The two random draws are the same, and count once; what is unstable is last.
-    assert_eq!(scores.lines().count(), 1 + 3 + 2);
-    assert!(row("1,3,").contains("unstable,0.0,"), "{scores}");
-    assert!(!scores.contains("\n2,3,") && !row("2,1,").contains("unstable"), "{scores}");
-    // As many terms as rows for each candidate and round.
-    assert_eq!(String::from_utf8(one["credits.csv"].clone()).unwrap().lines().count(), 1 + 2 * 5);
-    assert!(
-        String::from_utf8(one["search.md"].clone())
-            .unwrap()
-            .contains("candidates that reproduce both claims")
-    );
+    fs::write(at("design.toml"), ranked()).unwrap();
+    succeed(folder.path(), "study design.toml --jobs 2 --out one");
+    let ranking = rows(&at("one/ranking.csv"));
+    assert_eq!(ranking.len(), 4);
+    // What is unstable is last, and has no score.
+    let names: Vec<&str> = ranking.iter().map(|row| row["name"].as_str()).collect();
+    assert!(names[2].starts_with("unstable") && names[3].starts_with("unstable"), "{names:?}");
+    assert!(ranking[3]["score"] == "0.0" && ranking[0]["score"] != "0.0" && ranking[0]["claims"] == "2");
+    let page = fs::read_to_string(at("one/study.md")).unwrap();
+    assert!(page.contains("configurations that reproduce both claims") && !page.contains("NaN"), "{page}");
     succeed(folder.path(), "verify one");
-    succeed(folder.path(), "search --design design.toml --jobs 2 --out two");
-    assert_eq!(files(&at("two")), one);
-    // Its second part alone, as another machine would run it, with the candidates that the first part left.
-    succeed(folder.path(), "search --design design.toml --from one/next.toml --out three");
-    let second = |files: &BTreeMap<String, Vec<u8>>| {
-        let scores = String::from_utf8(files["scores.csv"].clone()).unwrap();
-        scores.lines().filter(|line| line.starts_with("2,")).map(str::to_owned).collect::<Vec<_>>()
-    };
-    assert_eq!(second(&files(&at("three"))), second(&one));
     let best = fs::read_to_string(at("one/best.toml")).unwrap();
-    // The others turn too far in a step.
-    assert!(best.contains("levels = 3") && row("2,1,").contains("gentle"), "{best}");
+    assert!(best.contains("levels = 3"), "{best}");
     fs::write(at("short.toml"), format!("{best}\n[physics]\nduration = 10.0\n")).unwrap();
     succeed(folder.path(), "simulate --settings short.toml --out body");
+    // The next round is a design of its own.
+    succeed(folder.path(), "study one/next.toml --out two");
+    let second = rows(&at("two/ranking.csv"));
+    assert_eq!(second.len(), 2);
+    assert!(second.iter().all(|row| row["name"].starts_with("gentle")), "{second:?}");
+    assert_eq!(rows(&at("two/study.csv"))[0]["simulations"], "3");
 }
 
 #[test]
-fn a_comparison_says_how_far_each_claim_is_from_the_first_configuration_s() {
+fn a_study_of_named_configurations_says_how_far_each_claim_is_from_the_first_one_s() {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name);
-    fs::write(at("design.toml"), comparison_design()).unwrap();
-    succeed(folder.path(), "compare --design design.toml --jobs 1 --out one");
+    fs::write(at("design.toml"), named()).unwrap();
+    succeed(folder.path(), "study design.toml --jobs 1 --out one");
     let one = files(&at("one"));
-    let expected =
-        ["comparison.csv", "comparison.md", "design.toml", "figures/claims-1.svg", "manifest.json"];
+    let expected = [
+        "configurations.csv",
+        "design.toml",
+        "figures/claims-1.svg",
+        "manifest.json",
+        "study.csv",
+        "study.md",
+    ];
     assert_eq!(one.keys().map(String::as_str).collect::<Vec<_>>(), expected);
-    let mut table = csv::Reader::from_path(at("one/comparison.csv")).unwrap();
-    let rows: Vec<BTreeMap<String, String>> = table.deserialize().map(Result::unwrap).collect();
-    assert_eq!(rows.len(), 4 * 2);
+    let claims = rows(&at("one/study.csv"));
+    assert_eq!(claims.len(), 4 * 2);
     let parts = |name: &str| {
-        rows.iter().find(|row| row["configuration"] == name && row["claim"] == "number-of-parts").unwrap()
+        claims.iter().find(|row| row["name"] == name && row["claim"] == "number-of-parts").unwrap()
     };
     let number = |name: &str, column: &str| parts(name)[column].parse::<f64>().unwrap();
     // What is the same differs by nothing, whatever the simulations that are drawn.
@@ -269,56 +258,66 @@ fn a_comparison_says_how_far_each_claim_is_from_the_first_configuration_s() {
     assert!((number("three", "change") - change).abs() < 1e-12 && change != 0.0);
     // Two simulations are too few for an interval of a change.
     assert!(parts("three")["change_low"].is_empty() && !parts("three")["low"].is_empty());
-    assert!(parts("gentle")["change"].is_empty() && parts("gentle")["resolved"] == "true");
-    assert!(parts("unstable")["value"].is_empty() && parts("unstable")["failed"] == "4");
-    let page = String::from_utf8(one["comparison.md"].clone()).unwrap();
+    assert!(parts("gentle")["change"].is_empty() && parts("unstable")["value"].is_empty());
+    let configurations = rows(&at("one/configurations.csv"));
+    assert!(configurations[0]["resolved"] == "true" && configurations[3]["failed"] == "4");
+    let page = String::from_utf8(one["study.md"].clone()).unwrap();
     assert!(page.contains("4 movements failed: ") && !page.contains("NaN"), "{page}");
 
-    succeed(folder.path(), "compare --design design.toml --jobs 3 --out two");
+    // Shards of any design.
+    for shard in ["2/2", "1/2"] {
+        succeed(folder.path(), &format!("study design.toml --shard {shard} --jobs 3 --out two"));
+    }
+    succeed(folder.path(), "study design.toml --gather --out two");
     assert_eq!(files(&at("two")), one);
-    fs::remove_file(at("one/comparison.md")).unwrap();
-    fs::remove_dir_all(at("one/figures")).unwrap();
-    succeed(folder.path(), "plot one");
-    assert_eq!(files(&at("one")), one);
     succeed(folder.path(), "verify one");
 }
 
 #[test]
 fn what_is_no_design_is_refused_in_one_line() {
     let folder = tempfile::tempdir().unwrap();
-    let refused = |command: &str, design: String, expected: &str| {
+    let refused = |arguments: &str, design: String, expected: &str| {
         fs::write(folder.path().join("design.toml"), design).unwrap();
-        let output = bodyschema(folder.path(), &format!("{command} --design design.toml --out out"));
+        let output =
+            bodyschema(folder.path(), &format!("study design.toml {arguments} --out out").replace("  ", " "));
         let message = String::from_utf8(output.stderr).unwrap();
         assert_eq!(output.status.code(), Some(2), "{message}");
         assert!(message.contains(expected), "{message:?} lacks {expected:?}");
         assert_eq!(message.lines().count(), 1, "{message}");
     };
-    let (study, search) = (sensitivity_design(), search_design());
-    refused("sensitivity", "seed = 3".to_owned(), "design.toml: ");
-    refused("sensitivity --only fins", study.clone(), "has no [[part]] named `fins`; it has levels, gains");
-    refused("sensitivity", study.replace("\"gains\"", "\"levels\""), "`levels` cannot name a [[part]]");
-    refused("sensitivity", study.replace("\"gains\"", "\"../gains\""), "`../gains` cannot name a [[part]]");
-    refused("sensitivity", study.replace("quantise.levels", "quantise.layers"), "`quantise.layers`");
-    refused("sensitivity", study.replace("levels = 3", "levels = 1"), "quantise.levels");
-    refused("sensitivity", study.replace("levels = 3", "layers = 3"), "unknown setting `quantise.layers`");
-    refused("search", study.clone(), "design.toml: ");
-    refused("search", search.replace("number-of-parts", "beauty"), "no claim `beauty`");
-    refused("search", search.replace("slack = 5", "slack = 0"), "must be positive");
-    refused("search", search.replace("1e5", "-1.0"), "motion.stiffness");
-    let comparison = comparison_design();
-    refused("compare", search.clone(), "design.toml: ");
-    refused("compare", comparison.replace("\"three\"", "\"gentle\""), "two configurations `gentle`");
-    refused("compare", comparison.replace("number-of-parts", "beauty"), "names `beauty` of exp1");
-    refused("compare", comparison.replace("levels = 3", "levels = 1"), "quantise.levels");
-    let fewer = "levels = 3 }, experiment = { simulations = 1 }";
-    refused("compare", comparison.replace("levels = 3 }", fewer), "another number of simulations");
+    let study = one_at_a_time();
+    refused("", "seed = 3".to_owned(), "design.toml: ");
+    refused("", "title = \"a\"\nseed = 3\nbeauty = 1".to_owned(), "unknown field `beauty`, expected one of");
     refused(
-        "compare",
+        "--only fins",
+        study.clone(),
+        "no configuration `fins`; give a number from 1 to 4, a name, or a factor: levels, gains",
+    );
+    refused("", study.replace("\"gains\"", "\"levels\""), "two of `levels`");
+    refused("", study.replace("\"gains\"", "\"../gains\""), "`../gains` cannot name a factor");
+    refused("", study.replace("quantise.levels", "quantise.layers"), "`quantise.layers`");
+    refused("", study.replace("levels = 3", "levels = 1"), "quantise.levels");
+    refused("", study.replace("levels = 3", "layers = 3"), "unknown setting `quantise.layers`");
+    let search = ranked();
+    refused("", search.replace("number-of-parts", "beauty"), "names `beauty` of exp1");
+    refused("", search.replace("slack = 5", "slack = 0"), "must both be there and positive");
+    refused("", search.replace("weight = 1\nslack = 5", "weight = 1"), "must both be there and positive");
+    refused("", search.replace("1e5", "-1.0"), "motion.stiffness");
+    refused("", search.replace("keep = 2", "keep = 0"), "`next.keep` is 0");
+    refused("", search.replace("\"ranking\", ", ""), "needs `ranking`");
+    let comparison = named();
+    refused("", comparison.replace("\"three\"", "\"gentle\""), "two of `gentle` among configurations");
+    refused("", comparison.replace("number-of-parts", "beauty"), "names `beauty` of exp1");
+    refused("", comparison.replace("levels = 3", "levels = 1"), "quantise.levels");
+    let fewer = "levels = 3 }, experiment = { simulations = 1 }";
+    refused("", comparison.replace("levels = 3 }", fewer), "another number of simulations");
+    refused(
+        "",
         comparison.replace("number-of-parts", "ari-too-few-clusters"),
         "names `ari-too-few-clusters`",
     );
-    let output = bodyschema(folder.path(), "search --design nothing.toml --out out");
+    let output = bodyschema(folder.path(), "study nothing.toml --out out");
     assert_eq!(output.status.code(), Some(2));
-    assert!(String::from_utf8(output.stderr).unwrap().contains("nothing.toml"));
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert!(message.contains("nothing.toml: no such file") && message.contains("multiverse"), "{message}");
 }

@@ -10,7 +10,7 @@ pub const HEADLINE: &str = "tree-accuracy";
 const PUBLISHED: &str = include_str!("../../reproduce/published.toml");
 
 /// An experiment of the paper.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Experiment {
     /// Section 5: body schema estimation over the dimensions d of the body map.
@@ -56,13 +56,6 @@ pub struct Claim {
     pub possible_counts: Vec<(usize, usize)>,
     /// What is measured.
     pub measure: Measure,
-}
-
-impl Claim {
-    /// The accepted range as tables have it, `low..high`; empty if there is none.
-    pub fn accepted(&self) -> String {
-        self.accept.map_or(String::new(), |(low, high)| format!("{low}..{high}"))
-    }
 }
 
 /// The conditions that a claim is about: all combinations.

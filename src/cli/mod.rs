@@ -10,6 +10,7 @@ mod posterior;
 mod program;
 mod results;
 mod stages;
+mod study;
 mod tree;
 mod view;
 

@@ -7,9 +7,10 @@ use clap::{Parser, Subcommand};
 
 use super::body::Body;
 use super::estimate::Estimate;
-use super::experiments::{Bodies, Compare, Multiverse, Reproduce, Search, Sensitivity};
+use super::experiments::{Bodies, Reproduce};
 use super::results::{Plot, Verify};
 use super::stages::{Distance, Infer, Map, Simulate};
+use super::study::Study;
 use super::tree::Tree;
 use super::view::View;
 
@@ -32,10 +33,7 @@ enum Command {
     Tree(Tree),
     Estimate(Estimate),
     Reproduce(Reproduce),
-    Search(Search),
-    Sensitivity(Sensitivity),
-    Compare(Compare),
-    Multiverse(Multiverse),
+    Study(Study),
     Bodies(Bodies),
     Plot(Plot),
     Verify(Verify),
@@ -53,10 +51,7 @@ impl Command {
             Self::Tree(command) => command.run(),
             Self::Estimate(command) => command.run(),
             Self::Reproduce(command) => command.run(),
-            Self::Search(command) => command.run(),
-            Self::Sensitivity(command) => command.run(),
-            Self::Compare(command) => command.run(),
-            Self::Multiverse(command) => command.run(),
+            Self::Study(command) => command.run(),
             Self::Bodies(command) => command.run(),
             Self::Plot(command) => command.run(),
             Self::Verify(command) => command.run(),

@@ -8,16 +8,16 @@ use clap::Args;
 
 use super::output::say;
 use crate::experiments::verify::{Finding, Outcome, against_manifest, against_reference};
-use crate::experiments::{bodies, compare, multiverse, reproduce, sensitivity};
+use crate::experiments::{bodies, reproduce};
 use crate::files::manifest::Manifest;
 use crate::report::{page, plot};
+use crate::study;
 
 /// Renders the figures of an experiment or study again from their tables, and writes its report again.
 ///
-/// Reads DIR/figures/*.csv and writes an .svg beside each. If DIR holds a finished experiment, judges its claims again from its
-/// samples.csv, with the accepted ranges of this program, and writes the figures, claims.csv, claims.md and report.html. If DIR holds a sensitivity study: its figures and sensitivity.md, from sensitivity.csv and
-/// design.toml. If it holds a comparison: its figures and comparison.md. If it holds a multiverse: its tables, figures and
-/// multiverse.md, from the specifications. If it holds a study of bodies: bodies.md and its figure.
+/// Of a finished experiment: judges its claims again from its samples.csv, with the accepted ranges of this program, and writes the
+/// figures, claims.csv, claims.md and report.html. Of a study: study.md and its figures, from its tables. Of a study of bodies:
+/// bodies.md and its figure. Of any other folder: an .svg beside each figures/*.csv.
 #[derive(Args)]
 pub struct Plot {
     /// Folder of an experiment or study
@@ -29,19 +29,9 @@ impl Plot {
     /// Runs the subcommand.
     pub fn run(self) -> Result<ExitCode> {
         let folder = &self.folder;
-        if sensitivity::is_study(folder) {
-            let pictures = sensitivity::redraw(folder)?;
-            say(format!("{} figures and sensitivity.md in {}", pictures.len(), folder.display()))?;
-            return Ok(ExitCode::SUCCESS);
-        }
-        if compare::is_comparison(folder) {
-            let pictures = compare::redraw(folder)?;
-            say(format!("{} figures and comparison.md in {}", pictures.len(), folder.display()))?;
-            return Ok(ExitCode::SUCCESS);
-        }
-        if multiverse::is_multiverse(folder) {
-            multiverse::redraw(folder)?;
-            say(format!("multiverse.md, its tables and figures in {}", folder.display()))?;
+        if study::is_study(folder) {
+            study::redraw(folder)?;
+            say(format!("study.md and its figures in {}", folder.display()))?;
             return Ok(ExitCode::SUCCESS);
         }
         if bodies::is_study(folder) {

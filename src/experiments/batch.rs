@@ -1,7 +1,7 @@
 //! Run tasks: simulate each movement once, infer from its body maps as often as asked, and do no work twice.
 //!
-//! Finished work is kept in checkpoints, from which a run that was stopped goes on. Experiments, the search and the
-//! study all run their simulations here.
+//! Finished work is kept in checkpoints, from which a run that was stopped continues. Experiments and studies run their simulations
+//! here.
 
 use std::path::Path;
 use std::sync::Mutex;
@@ -13,7 +13,7 @@ use super::artifacts::{ArtifactFiles, Artifacts};
 use super::cache::StageCache;
 use super::error::ExperimentError;
 use super::prefetch::Prefetch;
-use super::task::{Keep, Task, TaskProgress, by_movement};
+use super::task::{Keep, Task, TaskProgress};
 use crate::files::FileError;
 use crate::files::checkpoint::Checkpoints;
 use crate::pipeline::{
@@ -114,28 +114,30 @@ impl Batch<'_> {
         })
     }
 
-    /// Runs as many tasks at once as there are threads, those that share a movement after each other. Each takes as much
-    /// memory as the pressures of one simulation, 0.5 GB at full size.
+    /// Runs as many groups of tasks at once as there are threads, the tasks of a group after each other: those that share a movement.
+    /// Each group takes as much memory as the pressures of one simulation, 0.5 GB at full size. When a group is finished, its
+    /// place and its outcomes are handed to `keep`.
     ///
     /// # Errors
-    /// If a file cannot be written.
-    pub fn side_by_side(&self, tasks: &[Task]) -> Result<Vec<Outcome>, FileError> {
-        let movements = by_movement(tasks);
-        let outcomes: Vec<Mutex<Option<Outcome>>> = tasks.iter().map(|_| Mutex::new(None)).collect();
+    /// If a file cannot be written, or `keep` fails.
+    pub fn side_by_side(
+        &self,
+        groups: &[Vec<Task>],
+        keep: &(dyn Fn(usize, Vec<Outcome>) -> Result<(), FileError> + Sync),
+    ) -> Result<(), FileError> {
         let trouble: Mutex<Option<FileError>> = Mutex::new(None);
         let next = AtomicUsize::new(0);
         let work = || {
-            while let Some(movement) = movements.get(next.fetch_add(1, Ordering::Relaxed)) {
+            loop {
+                let at = next.fetch_add(1, Ordering::Relaxed);
+                let Some(group) = groups.get(at) else { return };
                 let mut shared = StageCache::default();
-                for &at in movement {
-                    match self.finish(&tasks[at], &mut shared) {
-                        Ok(outcome) => *outcomes[at].lock().expect("no worker panics") = Some(outcome),
-                        Err(error) => {
-                            next.store(movements.len(), Ordering::Relaxed);
-                            trouble.lock().expect("no worker panics").get_or_insert(error);
-                            return;
-                        }
-                    }
+                let outcomes: Result<Vec<Outcome>, FileError> =
+                    group.iter().map(|task| self.finish(task, &mut shared)).collect();
+                if let Err(error) = outcomes.and_then(|outcomes| keep(at, outcomes)) {
+                    next.store(groups.len(), Ordering::Relaxed);
+                    trouble.lock().expect("no worker panics").get_or_insert(error);
+                    return;
                 }
             }
         };
@@ -144,11 +146,7 @@ impl Batch<'_> {
         std::thread::scope(|scope| {
             (0..rayon::current_num_threads()).for_each(|_| drop(scope.spawn(work)));
         });
-        if let Some(error) = trouble.into_inner().expect("no worker panics") {
-            return Err(error);
-        }
-        let outcome = |slot: Mutex<Option<Outcome>>| slot.into_inner().expect("no worker panics");
-        Ok(outcomes.into_iter().map(|slot| outcome(slot).expect("every task was done")).collect())
+        trouble.into_inner().expect("no worker panics").map_or(Ok(()), Err)
     }
 
     /// Does what is left of a task, and keeps a failure, so that it is not tried again.

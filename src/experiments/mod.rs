@@ -1,21 +1,13 @@
-//! Run the paper's experiments, the search for a default, and the study of what the paper leaves open.
+//! Run the paper's experiments and the benchmark of bodies.
 
 mod artifacts;
-mod batch;
+pub mod batch;
 pub mod bodies;
-mod cache;
-pub mod compare;
-mod compared;
-mod configurations;
-pub mod design;
-mod draws;
-mod error;
-pub mod multiverse;
+pub mod cache;
+pub mod error;
 mod prefetch;
 pub mod progress;
 pub mod reproduce;
-pub mod search;
 mod seeds;
-pub mod sensitivity;
-mod task;
+pub mod task;
 pub mod verify;

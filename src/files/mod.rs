@@ -18,5 +18,5 @@ mod whole;
 pub use self::error::{FileError, one_line};
 pub use self::hash::sha256;
 pub(crate) use self::hash::sha256_of_text;
+pub(crate) use self::whole::write_same_text;
 pub use self::whole::{prepare_folder, read_text, write_text, write_whole};
-pub(crate) use self::whole::{remove_partial, write_folder, write_same_text};

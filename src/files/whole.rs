@@ -60,34 +60,6 @@ pub fn prepare_folder(path: &Path) -> Result<(), FileError> {
         .map_err(|error| FileError::new(path, format!("cannot be written to: {error}")))
 }
 
-/// Writes a folder that appears whole or not at all: `write` fills one beside it, which then takes its name. What was
-/// there before stays until then. Several processes may write the same folder at once; one of them wins.
-///
-/// # Errors
-/// If any of that fails.
-pub fn write_folder(
-    path: &Path,
-    write: impl FnOnce(&Path) -> Result<(), FileError>,
-) -> Result<(), FileError> {
-    let failed = |error: io::Error| FileError::new(path, format!("cannot be written: {error}"));
-    let (aside, old) = (path.with_added_extension(own("new")), path.with_added_extension(own("old")));
-    fs::create_dir_all(&aside).map_err(failed)?;
-    let written = write(&aside).and_then(|()| {
-        // A folder takes no name that another has.
-        if path.exists() {
-            fs::rename(path, &old).map_err(failed)?;
-        }
-        match fs::rename(&aside, path) {
-            Err(error) if !path.exists() => Err(failed(error)),
-            _ => Ok(()),
-        }
-    });
-    // What counts is there, or the first error.
-    let _ = fs::remove_dir_all(&aside);
-    let _ = fs::remove_dir_all(&old);
-    written
-}
-
 /// Writes a text that several processes may write at once, all of them the same.
 ///
 /// # Errors
@@ -96,21 +68,6 @@ pub fn write_same_text(path: &Path, text: &str) -> Result<(), FileError> {
     let aside = path.with_added_extension(own("new"));
     write_text(&aside, text)?;
     fs::rename(&aside, path).map_err(|error| FileError::new(path, format!("cannot be written: {error}")))
-}
-
-/// Removes what processes that were killed left of [`write_folder`] in a folder. None may be at work in it.
-///
-/// # Errors
-/// If it cannot be removed.
-pub fn remove_partial(folder: &Path) -> Result<(), FileError> {
-    let failed = |error: io::Error| FileError::new(folder, format!("cannot be put in order: {error}"));
-    for entry in fs::read_dir(folder).map_err(failed)? {
-        let path = entry.map_err(failed)?.path();
-        if path.extension().is_some_and(|extension| extension == PARTIAL) {
-            fs::remove_dir_all(&path).map_err(failed)?;
-        }
-    }
-    Ok(())
 }
 
 const PARTIAL: &str = "partial";

@@ -14,4 +14,5 @@ mod space;
 pub mod specifications;
 mod values;
 
+pub use self::canvas::PlotError;
 pub use self::pictures::render;

@@ -1,6 +1,6 @@
 //! Say whether the published tree accuracy survives another value of an open setting.
 
-use super::table::Row;
+use super::super::measures::MeasureRow;
 
 /// Whether the published tree accuracy survives a value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -13,7 +13,7 @@ pub enum Survival {
     Higher,
     /// The whole interval lies below.
     Lower,
-    /// There is no eligible draw.
+    /// There is no eligible sample.
     Nothing,
 }
 
@@ -21,8 +21,8 @@ impl Survival {
     const ALL: [Self; 5] = [Self::Yes, Self::Perhaps, Self::Higher, Self::Lower, Self::Nothing];
 
     /// Given the row of its tree accuracy and the range that counts as reproduced.
-    pub fn of(row: Option<&Row>, (low, high): (f64, f64)) -> Self {
-        let Some((rate, row)) = row.and_then(|row| Some((row.estimate?, row))) else { return Self::Nothing };
+    pub fn of(row: Option<&MeasureRow>, (low, high): (f64, f64)) -> Self {
+        let Some((rate, row)) = row.and_then(|row| Some((row.value?, row))) else { return Self::Nothing };
         let (least, most) = row.cells.low.zip(row.cells.high).unwrap_or((rate, rate));
         match () {
             () if (low..=high).contains(&rate) => Self::Yes,
@@ -53,33 +53,31 @@ pub fn counts(survivals: &[Survival]) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::design::DEFAULT;
-    use super::super::table::Measure;
+    use super::super::super::measures::Measure;
     use super::*;
     use crate::analysis::cells::EstimateCells;
     use crate::stages::schema::Model;
 
     #[test]
     fn the_published_rate_survives_where_the_range_is_met_or_reached() {
-        let row = |estimate, interval: Option<(f64, f64)>| {
+        let row = |value, interval: Option<(f64, f64)>| {
             let (low, high) = interval.unzip();
-            Row {
-                factor: DEFAULT.to_owned(),
-                value: String::new(),
+            MeasureRow {
+                configuration: 1,
                 coordination: 0.9,
                 dimension: 14,
                 model: Model::DpgmmLj,
                 measure: Measure::Tree,
-                estimate,
+                value,
                 cells: EstimateCells { n: 10, low, high, simulations: 2, lowest: None, highest: None },
-                difference: None,
-                difference_low: None,
-                difference_high: None,
+                change: None,
+                change_low: None,
+                change_high: None,
                 failed: 0,
                 failure: String::new(),
             }
         };
-        let of = |estimate, interval| Survival::of(Some(&row(estimate, interval)), (0.7, 0.9));
+        let of = |value, interval| Survival::of(Some(&row(value, interval)), (0.7, 0.9));
         assert_eq!(of(Some(0.8), Some((0.1, 1.0))), Survival::Yes);
         assert_eq!(of(Some(0.95), Some((0.85, 1.0))), Survival::Perhaps);
         assert_eq!(of(Some(0.95), Some((0.91, 1.0))), Survival::Higher);

@@ -1,0 +1,71 @@
+//! The subcommand study.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use anyhow::Result;
+use clap::Args;
+
+use super::options::Threads;
+use super::output::say;
+use crate::files::prepare_folder;
+use crate::study::{self, Design, DesignText, Only, Shard, plan};
+
+/// Runs many configurations of the experiments on shared simulations, and says by which the paper's claims hold.
+///
+/// A design says which: a named list, one change at a time around a base, a grid, or configurations that are drawn evenly from all
+/// combinations of options. The bundled designs are ablation, step, momentum, sensitivity, multiverse and multiverse-held-out;
+/// reproduce/NAME.toml explains each, and docs/reference.md the grammar.
+///
+/// Writes into DIR: study.md (the report), figures/*.svg, configurations.csv (a row for each configuration), study.csv (a row for
+/// each configuration and claim), where the design asks for them measures.csv, shares.csv, variance.csv and ranking.csv, and
+/// design.toml. A run that was stopped continues. On several machines: run each shard into one shared folder, then gather.
+#[derive(Args)]
+pub struct Study {
+    /// Design: a file, or the name of a bundled design
+    #[arg(value_name = "DESIGN")]
+    design: PathBuf,
+    /// Run only the I-th of N parts of the work, and write no tables
+    #[arg(long, value_name = "I/N")]
+    shard: Option<Shard>,
+    /// Run nothing; write the tables from the results of all shards
+    #[arg(long, conflicts_with_all = ["shard", "only"])]
+    gather: bool,
+    /// Run only this configuration (a number or a name), or those of this factor
+    #[arg(long, value_name = "K", conflicts_with = "shard")]
+    only: Option<Only>,
+    /// Master seed, instead of the design's
+    #[arg(long, value_name = "S")]
+    seed: Option<u64>,
+    #[command(flatten)]
+    threads: Threads,
+    /// Folder to write to
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+}
+
+impl Study {
+    /// Runs the subcommand.
+    pub fn run(self) -> Result<ExitCode> {
+        self.threads.apply()?;
+        let source = DesignText::read(&self.design, self.seed)?;
+        let design = Design::parse(&source)?;
+        // Before hours are spent on those that come first.
+        let mut configurations = plan(&design)?;
+        if let Some(only) = &self.only {
+            configurations = only.of(&design, configurations)?;
+        }
+        let out = &self.out;
+        prepare_folder(out)?;
+        if !self.gather {
+            study::run(&source.text, &configurations, self.shard.unwrap_or(Shard::WHOLE), out)?;
+        }
+        if self.shard.is_some() {
+            say(format!("This shard is finished, in {}. After all shards, run --gather.", out.display()))?;
+            return Ok(ExitCode::SUCCESS);
+        }
+        study::gather(design, &source.text, &configurations, self.only.is_none(), out)?;
+        say(format!("All files are in {}; open study.md there.", out.display()))?;
+        Ok(ExitCode::SUCCESS)
+    }
+}

@@ -1,0 +1,274 @@
+//! Read the design of a study: a base, the configurations around it, the claims that judge them, and a seed.
+
+mod check;
+
+use serde::{Deserialize, Serialize};
+use toml::Table;
+
+use super::choices::{Gains, short};
+use super::extends::{BUNDLED, DesignText};
+use super::levels::{Draws, Level};
+use crate::analysis::published::{Claim, Experiment, Measure};
+use crate::experiments::error::ExperimentError;
+
+/// The name of the base among configurations that vary one factor at a time.
+pub const BASE: &str = "default";
+
+/// Columns of configurations.csv beside those of the factors.
+pub const COLUMNS: [&str; 11] = [
+    "configuration",
+    "name",
+    "movement",
+    "distances",
+    "maps",
+    "resolved",
+    "anchor_separation_m",
+    "turn",
+    "failed",
+    "failure",
+    "settings",
+];
+
+/// A study: what is run, and how it is judged.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Design {
+    /// Title of the page.
+    pub title: String,
+    /// What the study is for: a paragraph of the page.
+    #[serde(default)]
+    pub about: String,
+    /// Master seed of all simulations. Those of the m-th drawn movement have the seed plus m.
+    pub seed: u64,
+    /// How the factors make configurations, unless they are drawn.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub vary: Option<Vary>,
+    /// How many configurations are drawn from the factors.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub draws: Option<Draws>,
+    /// Sections of the page, in their order; without any, those that fit the configurations.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub sections: Vec<Section>,
+    /// Names of factors whose options make groups of configurations, whose shares are also shown alone.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub groups: Vec<String>,
+    /// What every configuration has instead of the values of `reproduce/paper.toml`.
+    #[serde(default)]
+    pub settings: Table,
+    /// The next round of a search: how many of the best go on, and how they are run.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub next: Option<Next>,
+    /// The claims; without any, those of `reproduce/scored.toml`.
+    #[serde(rename = "claim", default)]
+    pub claims: Vec<JudgedBy>,
+    /// Named configurations; changes are from the first.
+    #[serde(rename = "configuration", default, skip_serializing_if = "Vec::is_empty")]
+    pub configurations: Vec<Named>,
+    /// Open settings, and the values that are tried.
+    #[serde(rename = "factor", default, skip_serializing_if = "Vec::is_empty")]
+    pub factors: Vec<Factor>,
+}
+
+/// How factors make configurations.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Vary {
+    /// The base, and one option of one factor at a time.
+    OneAtATime,
+    /// All combinations of all options.
+    Grid,
+}
+
+/// A section of the page.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Section {
+    /// Each claim's value by each configuration.
+    Values,
+    /// How far that is from the first configuration's, paired by simulation.
+    Changes,
+    /// For each factor, what its options do to parts and tree; for one factor at a time.
+    Factors,
+    /// In what share of the configurations each claim holds.
+    Shares,
+    /// The share of a claim's variance that each factor decides.
+    Variance,
+    /// All values of a claim by size, and the options below.
+    Curves,
+    /// The configurations by their score.
+    Ranking,
+    /// Which claims hold together.
+    TradeOffs,
+}
+
+/// A claim that configurations are judged by.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct JudgedBy {
+    /// Its short name in `reproduce/published.toml`.
+    pub id: String,
+    /// The experiment that it is judged by.
+    pub experiment: Experiment,
+    /// What stands above its column, in two lines at most.
+    pub label: String,
+    /// Its share of the score, before division by the sum of all.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub weight: Option<f64>,
+    /// Distance from the accepted range at which no credit is left; credit falls linearly up to there.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub slack: Option<f64>,
+}
+
+/// A named configuration.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Named {
+    /// Its name in tables and pictures.
+    pub name: String,
+    /// What it has instead of the base's values.
+    #[serde(default)]
+    pub settings: Table,
+}
+
+/// An open setting, or several that belong together.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Factor {
+    /// Name in tables, pictures and their files.
+    pub name: String,
+    /// What it is, as a heading; its name if it is empty.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub title: String,
+    /// What it decides; for drawn configurations.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub level: Option<Level>,
+    /// What the paper says of it, and where.
+    pub paper: String,
+    /// The settings that it varies, `section.key`; for one factor at a time.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub settings: Vec<String>,
+    /// Why the base has the value that it has; for one factor at a time.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub why: String,
+    /// The values.
+    #[serde(rename = "option")]
+    pub options: Vec<Choice>,
+}
+
+/// A value of an open setting.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Choice {
+    /// Name in tables and pictures; its settings in a line if it is empty.
+    #[serde(default)]
+    pub label: String,
+    /// Why it is reasonable: a source or a reason.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub why: String,
+    /// The settings.
+    #[serde(default)]
+    pub settings: Table,
+    /// Gains that go with the body.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gains: Option<Gains>,
+}
+
+/// The next round of a search.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Next {
+    /// Number of configurations that go on, the best first.
+    pub keep: usize,
+    /// What the next round lays over the base: usually more simulations.
+    pub settings: Table,
+}
+
+impl Design {
+    /// Reads a design.
+    ///
+    /// # Errors
+    /// If it is not a design, or names what is not there. The message names the file, the key, and what is allowed.
+    pub fn parse(source: &DesignText) -> Result<Self, ExperimentError> {
+        let wrong = |message: String| ExperimentError::design(&source.origin, message);
+        let mut design: Self = toml::from_str(&source.text).map_err(|error| wrong(error.to_string()))?;
+        if design.claims.is_empty() {
+            design.claims = scored();
+        }
+        for option in design.factors.iter_mut().flat_map(|factor| &mut factor.options) {
+            if option.label.is_empty() {
+                option.label = short(&option.settings);
+            }
+        }
+        if design.sections.is_empty() {
+            design.sections = design.usual_sections();
+        }
+        design.check().map_err(wrong)?;
+        Ok(design)
+    }
+
+    /// What the page shows if the design does not say.
+    fn usual_sections(&self) -> Vec<Section> {
+        match (self.vary, self.draws) {
+            (Some(Vary::OneAtATime), _) => vec![Section::Factors],
+            (None, None) => vec![Section::Values, Section::Changes],
+            _ => vec![Section::Shares, Section::Variance, Section::Curves],
+        }
+    }
+
+    /// Whether the page has a section.
+    pub fn has(&self, section: Section) -> bool {
+        self.sections.contains(&section)
+    }
+}
+
+/// The claims of `reproduce/scored.toml`, with their weights in the score.
+fn scored() -> Vec<JudgedBy> {
+    #[derive(Deserialize)]
+    #[serde(deny_unknown_fields)]
+    struct Scored {
+        #[serde(rename = "claim")]
+        claims: Vec<JudgedBy>,
+    }
+    let (_, text) = BUNDLED.iter().find(|(name, _)| *name == "scored").expect("it is bundled");
+    let Scored { claims } = toml::from_str(text).expect("reproduce/scored.toml has claims; a test checks it");
+    claims
+}
+
+impl JudgedBy {
+    /// The claim.
+    pub fn find<'a>(&self, claims: &'a [Claim]) -> Option<&'a Claim> {
+        let same = |claim: &&Claim| claim.id == self.id && claim.experiments.contains(&self.experiment);
+        claims.iter().find(same).filter(|claim| claim.accept.is_some() && is_of_samples(&claim.measure))
+    }
+
+    /// Its label in one line.
+    pub fn name(&self) -> String {
+        self.label.replace('\n', " ")
+    }
+}
+
+/// Whether it is a value of samples alone, and no test of them.
+fn is_of_samples(measure: &Measure) -> bool {
+    !matches!(
+        measure,
+        Measure::BaselineShare { .. }
+            | Measure::BaselineLoss { .. }
+            | Measure::TreeDependence {}
+            | Measure::Nothing { .. }
+    )
+}
+
+impl Factor {
+    /// Names of its options.
+    pub fn labels(&self) -> impl Iterator<Item = &str> {
+        self.options.iter().map(|option| option.label.as_str())
+    }
+
+    /// What it is, as a heading.
+    pub fn heading(&self) -> &str {
+        if self.title.is_empty() { &self.name } else { &self.title }
+    }
+}
+
+#[cfg(test)]
+mod tests;

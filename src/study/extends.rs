@@ -1,0 +1,124 @@
+//! Find the text of a design: a file or one of the bundled designs, laid over the design that it extends.
+
+use std::path::Path;
+
+use toml::{Table, Value};
+
+use super::choices::merge;
+use crate::experiments::error::ExperimentError;
+use crate::settings::read_toml;
+
+/// The designs that the program brings: those of `reproduce/`, by name.
+pub const BUNDLED: [(&str, &str); 7] = [
+    ("ablation", include_str!("../../reproduce/ablation.toml")),
+    ("momentum", include_str!("../../reproduce/momentum.toml")),
+    ("multiverse", include_str!("../../reproduce/multiverse.toml")),
+    ("multiverse-held-out", include_str!("../../reproduce/multiverse-held-out.toml")),
+    ("scored", include_str!("../../reproduce/scored.toml")),
+    ("sensitivity", include_str!("../../reproduce/sensitivity.toml")),
+    ("step", include_str!("../../reproduce/step.toml")),
+];
+
+/// Designs that may extend each other, at most.
+const MOST_EXTENDED: usize = 8;
+
+/// A design as a text that depends on no other file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DesignText {
+    /// TOML. Where the design extends no other and its seed is its own, this is the file itself, with its comments.
+    pub text: String,
+    /// Where it is from, for messages.
+    pub origin: String,
+}
+
+impl DesignText {
+    /// Reads a design: a file, or a bundled design by its name, such as `multiverse`. What it does not say stands in the design
+    /// that it `extends`; `seed` takes the place of its seed.
+    ///
+    /// # Errors
+    /// If there is no such file or name, or the text is not TOML.
+    pub fn read(design: &Path, seed: Option<u64>) -> Result<Self, ExperimentError> {
+        let (text, origin) = find(design)?;
+        let mut table = parse(&text, &origin)?;
+        let extends = table.contains_key("extends");
+        if !extends && seed.is_none() {
+            return Ok(Self { text, origin });
+        }
+        table = extended(table, design, &origin, 0)?;
+        if let Some(seed) = seed {
+            let seed = i64::try_from(seed)
+                .map_err(|_| ExperimentError::design(&origin, "cannot have a seed of 2^63 or more"))?;
+            table.insert("seed".to_owned(), Value::Integer(seed));
+        }
+        let text = toml::to_string(&table).expect("a table can be written");
+        Ok(Self { text, origin })
+    }
+}
+
+/// A design with all that it extends below it.
+fn extended(mut own: Table, path: &Path, origin: &str, depth: usize) -> Result<Table, ExperimentError> {
+    let Some(base) = own.remove("extends") else { return Ok(own) };
+    let Value::String(base) = base else {
+        return Err(ExperimentError::design(
+            origin,
+            "`extends` must be a file or the name of a bundled design",
+        ));
+    };
+    if depth == MOST_EXTENDED {
+        let message =
+            format!("extends more than {MOST_EXTENDED} designs, one after the other; is it a circle?");
+        return Err(ExperimentError::design(origin, message));
+    }
+    // Of a bundled design, the name without a folder and an extension is that of another bundled one.
+    let beside = path.parent().unwrap_or(Path::new("")).join(&base);
+    let path = match (beside.is_file(), Path::new(&base).file_stem()) {
+        (false, Some(name)) => name.into(),
+        _ => beside,
+    };
+    let (text, origin) = find(&path)?;
+    let mut below = extended(parse(&text, &origin)?, &path, &origin, depth + 1)?;
+    merge(&mut below, &own);
+    Ok(below)
+}
+
+/// The text of a file or of a bundled design, and where it is from.
+fn find(design: &Path) -> Result<(String, String), ExperimentError> {
+    let bundled = BUNDLED.iter().find(|(name, _)| Path::new(name) == design && !design.is_file());
+    match bundled {
+        Some((name, text)) => Ok(((*text).to_owned(), format!("reproduce/{name}.toml"))),
+        None if design.is_file() => Ok((read_toml(design)?, design.display().to_string())),
+        None => {
+            let names: Vec<&str> = BUNDLED.iter().map(|(name, _)| *name).collect();
+            let message = format!("no such file; give a design, or one of {}", names.join(", "));
+            Err(ExperimentError::design(&design.display().to_string(), message))
+        }
+    }
+}
+
+fn parse(text: &str, origin: &str) -> Result<Table, ExperimentError> {
+    text.parse().map_err(|error: toml::de::Error| ExperimentError::design(origin, error))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_a_design_does_not_say_stands_in_the_one_that_it_extends() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        std::fs::write(at("base.toml"), "seed = 1\ntitle = \"a\"\n[draws]\nmovements = 2\nmaps = 3\n")
+            .unwrap();
+        std::fs::write(at("over.toml"), "extends = \"base.toml\"\nseed = 5\n[draws]\nmovements = 7\n")
+            .unwrap();
+        let table =
+            |seed| -> Table { DesignText::read(&at("over.toml"), seed).unwrap().text.parse().unwrap() };
+        assert_eq!(table(None).to_string(), "seed = 5\ntitle = \"a\"\n\n[draws]\nmaps = 3\nmovements = 7\n");
+        assert_eq!(table(Some(9))["seed"].as_integer(), Some(9));
+        std::fs::write(at("base.toml"), "extends = \"over.toml\"").unwrap();
+        let circle = DesignText::read(&at("over.toml"), None).unwrap_err().to_string();
+        assert!(circle.contains("circle"), "{circle}");
+        let missing = DesignText::read(&at("nothing.toml"), None).unwrap_err().to_string();
+        assert!(missing.contains("nothing.toml") && missing.contains("multiverse"), "{missing}");
+    }
+}

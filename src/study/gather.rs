@@ -1,0 +1,109 @@
+//! Gather what all movements of a study gave into tables, pictures and a page.
+
+use std::path::Path;
+
+use super::design::{Design, Section};
+use super::evaluation::Evaluation;
+use super::extends::DesignText;
+use super::page;
+use super::plan::Configuration;
+use super::ranking::Ranking;
+use super::results::{Gathering, Results};
+use super::work::{DESIGN, Work, check_design};
+use crate::experiments::error::ExperimentError;
+use crate::files::manifest::Manifest;
+use crate::files::result_folder::ResultFolder;
+use crate::files::{one_line, read_text};
+use crate::settings::Settings;
+
+/// The page of a study.
+const PAGE: &str = "study.md";
+
+/// Gathers what all movements of these configurations gave, and writes the tables, the pictures and the page into `out`. Of
+/// `all` configurations of the design, the checkpoints are removed then; of some of them they stay.
+///
+/// # Errors
+/// If `out` holds another design or lacks a movement, or a file cannot be written.
+pub fn gather(
+    design: Design,
+    text: &str,
+    plan: &[Configuration],
+    all: bool,
+    out: &Path,
+) -> Result<(), ExperimentError> {
+    let mut folder = ResultFolder::new(out);
+    check_design(text, out)?;
+    let work = Work::new(plan, out);
+    let seed = design.seed;
+    let mut gathering = Gathering::new(design);
+    work.outcomes(out, |at, outcome| gathering.add(&plan[at], &outcome))?;
+    let results = gathering.finish();
+    // What an earlier run of other configurations of the design may have left.
+    folder.remove(["settings.toml", "best.toml", "next.toml"].map(str::to_owned))?;
+    folder.remember([DESIGN.to_owned()]);
+    results.write(&mut folder)?;
+    write_rest(&results, &mut folder)?;
+    if let [only] =
+        plan.iter().filter(|one| all || one.number != 1 || plan.len() == 1).collect::<Vec<_>>()[..]
+    {
+        folder.write_text("settings.toml", &settings_file(&only.settings))?;
+    }
+    folder.write_manifest(Manifest::of_study("study", seed))?;
+    if all {
+        work.clear()?;
+    }
+    Ok(())
+}
+
+/// All settings of one configuration, with which anyone can run the experiments.
+fn settings_file(settings: &Settings) -> String {
+    let settings = toml::to_string(settings).expect("settings are tables");
+    format!(
+        "# Use: bodyschema reproduce exp1 --settings settings.toml --out DIR; and the same with exp2.\n{settings}"
+    )
+}
+
+/// Whether a folder holds a finished study.
+pub fn is_study(folder: &Path) -> bool {
+    folder.join(DESIGN).is_file() && Results::are_in(folder)
+}
+
+/// Makes the page, the pictures and the derived tables again, from the tables and the design in a folder.
+///
+/// # Errors
+/// If they are not what a study wrote, or a file cannot be written.
+pub fn redraw(folder: &Path) -> Result<(), ExperimentError> {
+    let path = folder.join(DESIGN);
+    let source = DesignText { text: read_text(&path)?, origin: path.display().to_string() };
+    let design = Design::parse(&source)?;
+    // The revision of the program that ran the study, which may not be this one.
+    let manifest = Manifest::read(folder)?;
+    let results = Results::read(folder, design, one_line(&manifest.provenance.revision))?;
+    let mut written = ResultFolder::new(folder);
+    written.remember(manifest.outputs.iter().map(|output| output.file.clone()));
+    write_rest(&results, &mut written)?;
+    Ok(written.write_manifest(manifest)?)
+}
+
+/// Writes the page, the pictures and what the tables give.
+fn write_rest(results: &Results, folder: &mut ResultFolder) -> Result<(), ExperimentError> {
+    let evaluation = Evaluation::is_asked_for(&results.design).then(|| Evaluation::new(results));
+    if let Some(evaluation) = &evaluation {
+        folder.write_rows("shares.csv", &evaluation.shares)?;
+        folder.write_rows("joint.csv", evaluation.joint)?;
+        folder.write_rows("variance.csv", &evaluation.variance)?;
+    }
+    let ranking = results.design.has(Section::Ranking).then(|| Ranking::of(results));
+    if let Some(ranking) = &ranking {
+        folder.write_rows("ranking.csv", &ranking.rows)?;
+        for (name, text) in ranking.files(results) {
+            folder.write_text(name, &text)?;
+        }
+    }
+    for (name, picture) in page::pictures(results, evaluation.as_ref())? {
+        folder.write_text(&name, &picture)?;
+    }
+    let text = page::text(results, evaluation.as_ref(), ranking.as_ref());
+    folder.write_text(PAGE, &text)?;
+    Ok(())
+}

@@ -1,0 +1,55 @@
+//! Say what a factor decides, what configurations share by that, and how many are drawn at each level.
+
+use serde::{Deserialize, Serialize};
+
+/// How many are drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Draws {
+    /// Draws of the factors at the level of the movement.
+    pub movements: usize,
+    /// For each movement, draws of the factors at the level of the distances.
+    pub distances: usize,
+    /// For each matrix of distances, draws of the factors at the level of the body maps.
+    #[serde(default = "one")]
+    pub maps: usize,
+    /// For the body maps of each, draws of all other factors: one configuration each.
+    pub inferences: usize,
+}
+
+fn one() -> usize {
+    1
+}
+
+impl Draws {
+    /// Configurations at most, if that is a number.
+    pub fn count(self) -> Option<usize> {
+        let Self { movements, distances, maps, inferences } = self;
+        [movements, distances, maps, inferences].into_iter().try_fold(1_usize, usize::checked_mul)
+    }
+}
+
+/// What a factor decides, and all that comes after it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Level {
+    /// How the body moves.
+    Movement,
+    /// What it feels, and the distances between its sensors.
+    Distances,
+    /// The body maps.
+    Map,
+    /// What is inferred from them.
+    Inference,
+}
+
+/// What a configuration shares with others: those with the same number have the same movement, distances or body maps.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Places {
+    /// Number of the movement, from 1.
+    pub movement: usize,
+    /// Number of the matrix of distances, from 1.
+    pub distances: usize,
+    /// Number of the body maps, from 1.
+    pub maps: usize,
+}

@@ -1,0 +1,220 @@
+//! List the configurations of a design.
+
+use std::str::FromStr;
+
+use toml::Table;
+
+use super::choices::{flat, merge};
+use super::design::{BASE, Choice, Design, Factor, Vary};
+use super::draw::drawn;
+use super::levels::Places;
+use crate::experiments::error::ExperimentError;
+use crate::settings::Settings;
+
+/// One way to run the experiments.
+#[derive(Debug, Clone)]
+pub struct Configuration {
+    /// Its number, from 1.
+    pub number: usize,
+    /// Its name.
+    pub name: String,
+    /// What it shares with others.
+    pub places: Places,
+    /// The label of the option of each factor of the design; empty where it has the base's value.
+    pub labels: Vec<String>,
+    /// What it has instead of the base's values, gains computed.
+    pub changes: Table,
+    /// All settings.
+    pub settings: Settings,
+}
+
+/// Which configurations are run: those of a number, a name, or a factor.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Only(String);
+
+impl FromStr for Only {
+    type Err = std::convert::Infallible;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        Ok(Self(text.to_owned()))
+    }
+}
+
+/// All configurations of a design.
+///
+/// # Errors
+/// If the settings of one cannot be used; the message names it.
+pub fn plan(design: &Design) -> Result<Vec<Configuration>, ExperimentError> {
+    let all = match (design.vary, design.draws) {
+        (_, Some(draws)) => {
+            let drawn = drawn(design, draws).into_iter().enumerate();
+            let made = drawn.map(|(at, drawn)| {
+                let choices = chosen(design, &drawn.options);
+                let seed = design.seed + drawn.places.movement as u64;
+                configuration(design, at, (at + 1).to_string(), drawn.places, seed, &choices)
+            });
+            made.collect::<Result<Vec<_>, _>>()
+        }
+        (Some(Vary::Grid), None) => {
+            let made = combinations(design).into_iter().enumerate().map(|(at, options)| {
+                let choices = chosen(design, &options);
+                let name = choices
+                    .iter()
+                    .flatten()
+                    .map(|choice| choice.label.as_str())
+                    .collect::<Vec<_>>()
+                    .join("; ");
+                configuration(design, at, name, alone(at), design.seed, &choices)
+            });
+            made.collect()
+        }
+        (Some(Vary::OneAtATime), None) => {
+            let nothing = vec![None; design.factors.len()];
+            let mut all = vec![(BASE.to_owned(), nothing.clone())];
+            for (at, factor) in design.factors.iter().enumerate() {
+                for choice in &factor.options {
+                    let mut choices = nothing.clone();
+                    choices[at] = Some(choice);
+                    all.push((format!("{}: {}", factor.name, choice.label), choices));
+                }
+            }
+            let made = all.into_iter().enumerate();
+            made.map(|(at, (name, choices))| {
+                configuration(design, at, name, alone(at), design.seed, &choices)
+            })
+            .collect()
+        }
+        (None, None) => {
+            let made = design.configurations.iter().enumerate().map(|(at, named)| {
+                let choice = Choice {
+                    label: String::new(),
+                    why: String::new(),
+                    settings: named.settings.clone(),
+                    gains: None,
+                };
+                let made =
+                    configuration(design, at, named.name.clone(), alone(at), design.seed, &[Some(&choice)])?;
+                Ok(Configuration { labels: Vec::new(), ..made })
+            });
+            made.collect()
+        }
+    }?;
+    check(design, &all)?;
+    Ok(all)
+}
+
+/// Configurations on the same simulations: nothing is known beforehand of which distances and maps they share.
+fn alone(at: usize) -> Places {
+    Places { movement: 1, distances: at + 1, maps: at + 1 }
+}
+
+/// The options of a drawn configuration or of one of a grid.
+fn chosen<'a>(design: &'a Design, options: &[usize]) -> Vec<Option<&'a Choice>> {
+    let choice = |(factor, &option): (&'a Factor, &usize)| Some(&factor.options[option]);
+    design.factors.iter().zip(options).map(choice).collect()
+}
+
+/// All combinations of options, the last factor's first to change.
+fn combinations(design: &Design) -> Vec<Vec<usize>> {
+    let extend = |all: Vec<Vec<usize>>, factor: &Factor| {
+        let each = |one: &Vec<usize>| {
+            (0..factor.options.len()).map(|option| [&one[..], &[option]].concat()).collect::<Vec<_>>()
+        };
+        all.iter().flat_map(each).collect()
+    };
+    design.factors.iter().fold(vec![Vec::new()], extend)
+}
+
+fn configuration(
+    design: &Design,
+    at: usize,
+    name: String,
+    places: Places,
+    seed: u64,
+    choices: &[Option<&Choice>],
+) -> Result<Configuration, ExperimentError> {
+    let (mut changes, mut gains) = (Table::new(), None);
+    for choice in choices.iter().flatten() {
+        merge(&mut changes, &choice.settings);
+        gains = choice.gains.or(gains);
+    }
+    let origin = format!("the configuration {name} of the study");
+    let mut settings = Settings::overlaid([&design.settings, &changes], &origin)?;
+    if let Some(gains) = gains {
+        merge(&mut changes, &gains.settings(&settings));
+        settings = Settings::overlaid([&design.settings, &changes], &origin)?;
+    }
+    settings.experiment.seed = seed;
+    let labels =
+        choices.iter().map(|choice| choice.map_or(String::new(), |choice| choice.label.clone())).collect();
+    Ok(Configuration { number: at + 1, name, places, labels, changes, settings })
+}
+
+/// Whether what is compared can be compared.
+fn check(design: &Design, all: &[Configuration]) -> Result<(), ExperimentError> {
+    let wrong = |one: &Configuration, message: &str| {
+        Err(ExperimentError::design(&format!("the configuration {} of the study", one.name), message))
+    };
+    if design.draws.is_some()
+        && let Some(one) = all.iter().find(|one| one.settings.experiment.simulations < 2)
+    {
+        return wrong(
+            one,
+            "has one simulation; simulations differ, so use at least two (experiment.simulations)",
+        );
+    }
+    let simulations = all[0].settings.experiment.simulations;
+    match all.iter().find(|one| one.settings.experiment.simulations != simulations) {
+        None => Ok(()),
+        Some(other) => {
+            wrong(other, "has another number of simulations than the first; give all of them the same")
+        }
+    }
+}
+
+impl Only {
+    /// The configurations that it names, after the first, from which changes are measured; numbers stay those of the whole
+    /// design.
+    ///
+    /// # Errors
+    /// If it names none.
+    pub fn of(
+        &self,
+        design: &Design,
+        all: Vec<Configuration>,
+    ) -> Result<Vec<Configuration>, ExperimentError> {
+        let Self(wanted) = self;
+        let factor = design.factors.iter().position(|factor| factor.name == *wanted);
+        let factor = factor.filter(|_| design.vary == Some(Vary::OneAtATime));
+        let named = |one: &Configuration| {
+            one.number.to_string() == *wanted
+                || one.name == *wanted
+                || factor.is_some_and(|at| !one.labels[at].is_empty())
+        };
+        if !all.iter().any(named) {
+            let factors: Vec<&str> = match design.vary {
+                Some(Vary::OneAtATime) => design.factors.iter().map(|factor| factor.name.as_str()).collect(),
+                _ => Vec::new(),
+            };
+            let or = if factors.is_empty() {
+                String::new()
+            } else {
+                format!(", or a factor: {}", factors.join(", "))
+            };
+            let message = format!(
+                "there is no configuration `{wanted}`; give a number from 1 to {}, a name{or}",
+                all.len()
+            );
+            return Err(ExperimentError::design("--only", message));
+        }
+        let base = design.draws.is_none();
+        Ok(all.into_iter().filter(|one| named(one) || (base && one.number == 1)).collect())
+    }
+}
+
+impl Configuration {
+    /// What it has instead of the base's values, in a line.
+    pub fn in_a_line(&self) -> String {
+        flat(&self.changes).join(", ")
+    }
+}

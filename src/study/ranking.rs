@@ -1,0 +1,173 @@
+//! Rank configurations by the score of the claims that they reproduce, and name those that go on to a next round.
+
+use serde::Serialize;
+use toml::Table;
+
+use super::design::{Design, JudgedBy, Named, Section};
+use super::plan::plan;
+use super::results::{ClaimRow, Results};
+use crate::analysis::claims::Verdict;
+
+/// A configuration and its score: a row of `ranking.csv`.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct RankRow {
+    /// Its place, from 1.
+    pub rank: usize,
+    /// Its number.
+    pub configuration: usize,
+    /// Its name.
+    pub name: String,
+    /// Weighted share of the claims that it reproduces, with partial credit near their ranges; 0 if anything of it failed.
+    pub score: f64,
+    /// Whether the physics step resolves all its movements.
+    pub resolved: bool,
+    /// Number of scored claims that it reproduces.
+    pub reproduced: usize,
+    /// Number of scored claims.
+    pub claims: usize,
+    /// Names of the claims that it reproduces.
+    pub which: String,
+    /// What it has instead of the base's values.
+    pub settings: String,
+}
+
+/// All configurations by their score, those that the physics step resolves first.
+pub struct Ranking {
+    /// The best first.
+    pub rows: Vec<RankRow>,
+}
+
+impl Ranking {
+    /// Of a finished study. Of equal scores the earlier configuration stays first.
+    pub fn of(results: &Results) -> Self {
+        let scored: Vec<(usize, &JudgedBy)> = scored(&results.design);
+        let mut rows: Vec<RankRow> = Vec::new();
+        for (place, one) in results.configurations.iter().enumerate() {
+            let claims = results.claims_of(place);
+            let of_score = || scored.iter().map(|&(at, judged)| (judged, &claims[at]));
+            let total: f64 = of_score().filter_map(|(judged, _)| judged.weight).sum();
+            let weighted: f64 =
+                of_score().map(|(judged, row)| judged.weight.unwrap_or_default() * credit(judged, row)).sum();
+            let reproduced: Vec<&str> = of_score()
+                .filter(|(_, row)| row.verdict == Verdict::Reproduced)
+                .map(|(judged, _)| judged.id.as_str())
+                .collect();
+            rows.push(RankRow {
+                rank: 0,
+                configuration: one.number,
+                name: one.name.clone(),
+                score: if one.failed == 0 { weighted / total } else { 0.0 },
+                resolved: one.resolved,
+                reproduced: reproduced.len(),
+                claims: scored.len(),
+                which: reproduced.join(" "),
+                settings: one.settings.clone(),
+            });
+        }
+        // Stable.
+        rows.sort_by(|a, b| b.resolved.cmp(&a.resolved).then(b.score.total_cmp(&a.score)));
+        rows.iter_mut().enumerate().for_each(|(at, row)| row.rank = at + 1);
+        Self { rows }
+    }
+
+    /// Names and texts of best.toml, the settings of the best resolved configuration, and of next.toml, the design of the next
+    /// round, where there are such.
+    pub fn files(&self, results: &Results) -> Vec<(&'static str, String)> {
+        let Ok(plan) = plan(&results.design) else { return Vec::new() };
+        let changes = |row: &RankRow| {
+            plan.iter().find(|one| one.number == row.configuration).map(|one| one.changes.clone())
+        };
+        let mut files = Vec::new();
+        // What the step does not resolve cannot win.
+        if let Some(best) = self.rows.first().filter(|best| best.resolved)
+            && let Some(table) = changes(best)
+        {
+            files.push(("best.toml", format!("# The configuration {}.\n{}", best.name, in_toml(&table))));
+        }
+        if let Some(next) = &results.design.next {
+            let go_on = self.rows.iter().take(next.keep);
+            let configurations: Vec<Named> = go_on
+                .filter_map(|row| Some(Named { name: row.name.clone(), settings: changes(row)? }))
+                .collect();
+            let mut settings = results.design.settings.clone();
+            super::choices::merge(&mut settings, &next.settings);
+            let design = Design {
+                title: format!("{}: the next round", results.design.title),
+                settings,
+                configurations,
+                vary: None,
+                draws: None,
+                groups: Vec::new(),
+                factors: Vec::new(),
+                next: None,
+                sections: vec![Section::Ranking, Section::TradeOffs],
+                ..results.design.clone()
+            };
+            let text = toml::to_string(&design).expect("a design can be written");
+            files.push((
+                "next.toml",
+                format!("# The best {} configurations, the best first.\n{text}", next.keep),
+            ));
+        }
+        files
+    }
+}
+
+fn in_toml(table: &Table) -> String {
+    toml::to_string(table).expect("a table can be written")
+}
+
+/// The claims that count, with their places in the design.
+pub fn scored(design: &Design) -> Vec<(usize, &JudgedBy)> {
+    design.claims.iter().enumerate().filter(|(_, judged)| judged.weight.is_some()).collect()
+}
+
+/// 1 within the accepted range, less outside, 0 where there is nothing to judge.
+fn credit(judged: &JudgedBy, row: &ClaimRow) -> f64 {
+    let (Some(value), Some(slack)) = (row.value, judged.slack) else { return 0.0 };
+    let outside = (row.accepted_low - value).max(value - row.accepted_high).max(0.0);
+    (1.0 - outside / slack).max(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::analysis::cells::EstimateCells;
+    use crate::analysis::published::Experiment;
+
+    #[test]
+    fn credit_is_full_within_the_range_and_falls_to_nothing_outside() {
+        let judged = JudgedBy {
+            id: "tree-accuracy".to_owned(),
+            experiment: Experiment::Exp1,
+            label: String::new(),
+            weight: Some(3.0),
+            slack: Some(0.2),
+        };
+        let (low, high) = (0.6, 0.9);
+        let credit = |value: Option<f64>| {
+            let row = ClaimRow {
+                configuration: 1,
+                name: String::new(),
+                claim: judged.id.clone(),
+                experiment: Experiment::Exp1,
+                accepted_low: low,
+                accepted_high: high,
+                value,
+                cells: EstimateCells::default(),
+                found: String::new(),
+                verdict: Verdict::NotTestable,
+                change: None,
+                change_low: None,
+                change_high: None,
+            };
+            super::credit(&judged, &row)
+        };
+        assert_eq!([low, 0.5 * (low + high), high].map(|value| credit(Some(value))), [1.0; 3]);
+        assert!(
+            (credit(Some(low - 0.05)) - 0.75).abs() < 1e-12
+                && (credit(Some(high + 0.05)) - 0.75).abs() < 1e-12
+        );
+        assert_eq!([credit(Some(low - 0.3)), credit(None)], [0.0; 2]);
+    }
+}

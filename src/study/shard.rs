@@ -1,0 +1,33 @@
+//! Cut the work of a study into parts that can run on different machines.
+
+use std::str::FromStr;
+
+/// A part of the work: the `index`-th of `of`, from 1.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Shard {
+    index: usize,
+    of: usize,
+}
+
+impl Shard {
+    /// All of it.
+    pub const WHOLE: Self = Self { index: 1, of: 1 };
+
+    /// Whether it has the piece of work at this place of a list, from 0.
+    pub fn has(self, place: usize) -> bool {
+        place % self.of == self.index - 1
+    }
+}
+
+impl FromStr for Shard {
+    type Err = String;
+
+    /// `I/N`.
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        let (index, of) = text.split_once('/').unwrap_or_default();
+        match (index.parse(), of.parse()) {
+            (Ok(index), Ok(of)) if (1..=of).contains(&index) => Ok(Self { index, of }),
+            _ => Err("a shard is I/N, with I from 1 to N, such as 3/8".to_owned()),
+        }
+    }
+}
