@@ -15,8 +15,8 @@ VERDICTS = ["reproduced", "not reproduced", "not testable"]
 CONFIRMATION, BEFORE = "docs/shown/confirm", "docs/shown"
 # Values of columns of claims.csv and of the tables of figures.
 ALL, BEST, EQUATIONS, CODE = "all-draws", "best-draw", "equations", "authors-code"
-ABLATION, MOMENTUM, STEP = (f"docs/shown/{name}/comparison.csv" for name in ["ablation", "momentum", "step"])
-SENSITIVITY = "docs/shown/sensitivity/sensitivity.csv"
+ABLATION, MOMENTUM, STEP = (f"docs/shown/{name}/study.csv" for name in ["ablation", "momentum", "step"])
+SENSITIVITY = "docs/shown/sensitivity/measures.csv"
 
 # What values.toml will hold: each value in words, with its file; what holds; and what the text says that is not so.
 values = {}
@@ -117,8 +117,8 @@ def headline(source, reading):
 
 
 def compared(source):
-    """Rows of a comparison, by configuration and claim."""
-    return {(row["configuration"], row["claim"]): row for row in table(source)}
+    """Rows of a study, by name of the configuration and claim."""
+    return {(row["name"], row["claim"]): row for row in table(source)}
 
 
 def claims_of(folder, before=None):

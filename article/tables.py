@@ -109,9 +109,12 @@ def rates(now, before):
 
 def sensitivity(measure, part):
     """Rows of DPGMM-LJ at p = 0.9 and d = 14."""
-    wanted = (part, "0.9", "14", "dpgmm-lj", measure)
-    rows = [row for row in table(SENSITIVITY) if tuple(row[key] for key in ["part", "coordination", "dimension", "model", "measure"]) == wanted]
-    return [row | {"setting": row["value"], "value": row["estimate"]} for row in rows]
+    wanted = ("0.9", "14", "dpgmm-lj", measure)
+    rows = [row for row in table(SENSITIVITY) if tuple(row[key] for key in ["coordination", "dimension", "model", "measure"]) == wanted]
+    names = {row["configuration"]: row for row in table("docs/shown/sensitivity/configurations.csv")}
+    # The base has the name "default" and no label; every other configuration has the label of one factor.
+    of_part = lambda own: own["name"] == part or own.get(part)
+    return [row | {"setting": names[row["configuration"]].get(part, "")} for row in rows if of_part(names[row["configuration"]])]
 
 
 def seed(source):
@@ -127,7 +130,7 @@ def choices(published):
         if "part" in choice:
             found, source = varied(choice), SENSITIVITY
         else:
-            source = f"docs/shown/{choice['study']}/comparison.csv"
+            source = f"docs/shown/{choice['study']}/study.csv"
             row, all = (compared(source)[choice["configuration"], id] for id in ["tree-accuracy", "number-of-parts"])
             found = [(choice["name"], row, int(all["n"]))]
         rows.append(choice_row(choice["state"], found, source, published["tree-accuracy"]["accept"]))

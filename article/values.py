@@ -269,7 +269,7 @@ def search():
 def multiverse(published):
     folder = "docs/shown/multiverse"
     low, high = published["tree-accuracy"]["accept"]
-    source = f"{folder}/multiverse.csv.gz"
+    source = f"{folder}/study.csv.gz"
     rows = [row for row in table(source) if row["claim"] == "tree-accuracy"]
     found = [float(row["value"]) for row in rows if row["value"]]
     value("universes", thousands(len(rows)), source)
@@ -279,7 +279,7 @@ def multiverse(published):
     value("universes-zero", sum(rate == 0 for rate in found), source)
     value("universes-above", sum(rate > high for rate in found), source)
     says("no specification is within the range", all(rate < low or rate > high for rate in found))
-    source = f"{folder}/specifications.csv.gz"
+    source = f"{folder}/configurations.csv.gz"
     rows = table(source)
     value("universes-resolved", sum(row["resolved"] == "true" for row in rows), source)
     value("movements", len({row["movement"] for row in rows}), source)

@@ -281,27 +281,27 @@ def search(results):
 
 
 def sensitivity(results):
-    study(results / "sensitivity", "sensitivity.md", ["sensitivity.csv"])
+    study(results / "sensitivity", ["configurations.csv", "study.csv", "measures.csv"])
 
 
 def ablation(results):
-    study(results / "ablation", "comparison.md", ["comparison.csv"])
+    study(results / "ablation", ["configurations.csv", "study.csv"])
 
 
 def shorter_step(results):
-    study(results / "step", "comparison.md", ["comparison.csv"])
+    study(results / "step", ["configurations.csv", "study.csv"])
 
 
 def momentum(results):
-    study(results / "momentum", "comparison.md", ["comparison.csv"])
+    study(results / "momentum", ["configurations.csv", "study.csv"])
 
 
 def multiverse(results):
-    tables = ["multiverse.csv", "specifications.csv", "shares.csv", "variance.csv", "joint.csv"]
-    study(results / "multiverse", "multiverse.md", tables)
+    large = ["configurations.csv", "study.csv"]
+    study(results / "multiverse", [*large, "headline.csv", "shares.csv", "variance.csv", "joint.csv"])
     # Over a megabyte, and nearly all of it again and again the same.
     page = SHOWN / "multiverse" / "README.md"
-    for table in tables[:2]:
+    for table in large:
         plain = SHOWN / "multiverse" / table
         plain.with_name(f"{table}.gz").write_bytes(gzip.compress(plain.read_bytes(), mtime=0))
         plain.unlink()
@@ -314,7 +314,7 @@ def held_out(results):
     own, other = (read_shares(results / name) for name in ["multiverse", "multiverse-held-out"])
     rows = [
         "## Another seed\n",
-        "The same design with other bodies, movements and specifications (`reproduce/multiverse-held-out.sh`): all "
+        "The same design with other bodies, movements and configurations (`reproduce/multiverse-held-out.sh`): all "
         f"{other['all', 'tree-accuracy']['n']} of them. Within: whether that share lies in the interval of the large "
         "multiverse. [Its shares](../multiverse-held-out/shares.csv).\n",
         "| claim | share | of the other seed | within |",
@@ -331,10 +331,10 @@ def held_out(results):
     rows.append(f"\n{within} of {count} shares lie within.\n")
     copy([results / "multiverse-held-out" / "shares.csv"], SHOWN / "multiverse-held-out")
     page = SHOWN / "multiverse" / "README.md"
-    text = re.sub(r"## Another seed\n.*?(?=## The choices\n)", "", page.read_text(), flags=re.S)
-    before, choices = text.split("## The choices\n")
+    text = re.sub(r"## Another seed\n.*?(?=## The options\n)", "", page.read_text(), flags=re.S)
+    before, choices = text.split("## The options\n")
     section = "\n".join(rows)
-    page.write_text(f"{before}{section}\n## The choices\n{choices}")
+    page.write_text(f"{before}{section}\n## The options\n{choices}")
 
 
 def read_shares(folder):
@@ -348,15 +348,15 @@ def percent(share):
 
 
 def bodies(results):
-    study(results / "bodies", "bodies.md", ["recordings.csv", "edges.csv"])
+    study(results / "bodies", ["recordings.csv", "edges.csv"], "bodies.md")
 
 
 def mixing(results):
     tables = ["bodies-chains.csv", "bodies-posterior.csv", "edges.csv", "traces.csv", "traces-seconds.csv"]
-    study(results / "mixing", "mixing.md", tables)
+    study(results / "mixing", tables, "mixing.md")
 
 
-def study(folder, page, tables):
+def study(folder, tables, page="study.md"):
     """Put the tables, the pictures and the page of a study into its folder of docs/shown."""
     name, text = folder.name, (folder / page).read_text()
     copy([*(folder / table for table in tables), *sorted((folder / "figures").glob("*.svg"))], SHOWN / name)
@@ -379,7 +379,7 @@ def open_settings():
     searched |= {key: "search" for screen in ["fluid-screen", "fluid-wide"] for key in varied(screen, settings)}
     lines = ["| setting | the paper says | ours | reason | source |", "|---|---|---|---|---|"]
     named = set()
-    for part in study["part"]:
+    for part in study["factor"]:
         if part["name"] == "pairs":
             continue
         named.update(part["settings"])

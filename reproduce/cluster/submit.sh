@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Submits a multiverse to Slurm: a job array with a shard for each task, and a job that gathers them. All tasks write into
-# one folder, which all nodes must see. Submit again what failed: finished specifications are not run again.
+# Submits a study to Slurm: a job array with a shard for each task, and a job that gathers them. All tasks write into
+# one folder, which all nodes must see. Submit again what failed: finished movements are not run again.
 set -euo pipefail
 here=$(CDPATH= cd -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")" && pwd)
 root=$(CDPATH= cd -- "$here/../.." && pwd)
@@ -9,7 +9,7 @@ usage() {
     cat <<EOF
 Usage: reproduce/cluster/submit.sh --shards N --out DIR [--design FILE] [--program FILE] [-- SBATCH OPTIONS]
 
-  --shards N      tasks of the job array; at most as many as the design has movements
+  --shards N      tasks of the job array; at most as many as the study has movements
   --out DIR       folder that all nodes see
   --design FILE   design, instead of reproduce/multiverse.toml
   --program FILE  bodyschema, instead of target/release/bodyschema; a command line in a container works, too:

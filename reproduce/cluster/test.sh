@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Whether the job array does what it should: starts a Slurm of one node on this machine, submits a small multiverse as an
+# Whether the job array does what it should: starts a Slurm of one node on this machine, submits a small study as an
 # array, kills and requeues a task, and compares the gathered bytes with those of a run without Slurm. Needs root, and Debian
 # or Ubuntu; installs slurm-wlm and munge. Takes some three minutes.
 set -euo pipefail
@@ -76,22 +76,22 @@ done
 sinfo
 
 design=$here/small.toml
-"$program" multiverse --design "$design" --out "$work/alone"
+"$program" study "$design" --out "$work/alone"
 
 "$here/submit.sh" --shards 4 --design "$design" --program "$program" --out "$work/slurm" -- --cpus-per-task=1 --mem=500M
-array=$(squeue -h -r -n multiverse -o %F | head -n 1)
+array=$(squeue -h -r -n study -o %F | head -n 1)
 # Killed in the middle of its work, and requeued.
 for _ in $(seq 60); do
     [ ! -d "$work/slurm/checkpoints" ] || break
     sleep 0.2
 done
-requeued=$(squeue -h -r -t RUNNING -n multiverse -o %i | head -n 1)
+requeued=$(squeue -h -r -t RUNNING -n study -o %i | head -n 1)
 [ -n "$requeued" ] && scontrol requeue "$requeued" && echo "killed and requeued $requeued"
 for _ in $(seq 300); do
     [ -n "$(squeue -h)" ] || break
     sleep 1
 done
-[ -f "$work/slurm/multiverse.md" ] || { echo "test.sh: the shards of job $array were not gathered" >&2; exit 1; }
+[ -f "$work/slurm/study.md" ] || { echo "test.sh: the shards of job $array were not gathered" >&2; exit 1; }
 [ -n "$requeued" ] || { echo "test.sh: no task was running, so none was killed" >&2; exit 1; }
 diff -r --exclude=checkpoints --exclude=logs --exclude=ro-crate-metadata.json "$work/alone" "$work/slurm"
 echo "a run under Slurm, with a task killed and requeued, gave the same bytes as one without"

@@ -20,12 +20,9 @@ use crate::report::plot::{self, PlotError};
 pub fn text(results: &Results, evaluation: Option<&Evaluation>, ranking: Option<&Ranking>) -> String {
     let design = &results.design;
     let mut lines = vec![format!("# {}\n", design.title)];
-    if !design.about.is_empty() {
-        lines.extend([design.about.trim().to_owned(), String::new()]);
-    }
-    lines.push(provenance(results));
+    let mut sections = Vec::new();
     for section in &design.sections {
-        lines.extend(match section {
+        sections.extend(match section {
             Section::Values => values::values(results),
             Section::Changes => values::changes(results),
             Section::Factors => factors::section(results),
@@ -36,12 +33,25 @@ pub fn text(results: &Results, evaluation: Option<&Evaluation>, ranking: Option<
             Section::TradeOffs => trade_offs::section(results),
         });
     }
+    // A page begins with its question, and with the answer where the program knows it.
+    let is_answer = |line: &String| !line.starts_with("\n##");
+    let answers = sections.iter().take(1).filter(|line| is_answer(line)).count();
+    if !design.about.is_empty() {
+        lines.extend([design.about.trim().to_owned(), String::new()]);
+    }
+    lines.extend(sections.drain(..answers));
+    lines.push(provenance(results));
+    lines.extend(sections);
     lines.extend(match (design.vary, design.configurations.is_empty()) {
         (Some(Vary::OneAtATime), _) => Vec::new(),
         (_, false) => configurations(results),
         _ => options(&design.factors),
     });
-    lines.join("\n").trim_end().to_owned() + "\n"
+    let mut text = lines.join("\n").trim_end().to_owned() + "\n";
+    while text.contains("\n\n\n") {
+        text = text.replace("\n\n\n", "\n\n");
+    }
+    text
 }
 
 /// How the numbers were made.

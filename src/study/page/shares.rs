@@ -13,7 +13,7 @@ const SHOWN: usize = 4;
 
 /// The answer, how the configurations were drawn, and the share of each claim.
 pub fn shares(evaluation: &Evaluation) -> Vec<String> {
-    let mut lines = vec![answer(evaluation), String::new()];
+    let mut lines = vec![answer(evaluation) + "\n"];
     if let Some(draws) = evaluation.results.design.draws {
         lines.push(drawn(draws));
     }
