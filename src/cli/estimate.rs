@@ -21,8 +21,8 @@ use crate::numerics::rng::stream;
 use crate::recording::Recording;
 use crate::report::estimated::page;
 use crate::settings::Base;
-use crate::stages::co_motion::MIN_SENSORS;
 use crate::stages::evaluate::score;
+use crate::stages::rigid_parts::MIN_SENSORS;
 use crate::stages::usable::Fault;
 
 /// Estimates parts and tree of any body from touch alone, such as your own robot (not in the paper).
@@ -130,16 +130,16 @@ impl Estimate {
             out.display()
         ))?;
         if summary.parts == 1 {
-            let left = mean(&found.parts.left).value.unwrap_or(0.0);
+            let residual = mean(&found.parts.residuals).value.unwrap_or(0.0);
             say(format!(
                 "no two parts can be distinguished: the residual variance of a single rigid motion is {:.1} %{}",
-                100.0 * left,
-                if left < 0.05 { "; no joint seems to move" } else { "" }
+                100.0 * residual,
+                if residual < 0.05 { "; no joint seems to move" } else { "" }
             ))?;
         }
-        tree::print(&found.tree, &found.parts.labels)?;
+        tree::print(&found.joints, &found.parts.labels)?;
         if let Some(truth) = truth {
-            let score = score(&found.parts.labels, &found.tree.tree, &recording.truth(&truth), 1.0);
+            let score = score(&found.parts.labels, &found.joints.tree, &recording.truth(&truth), 1.0);
             tree::print_score(&score)?;
         }
         Ok(ExitCode::SUCCESS)
@@ -150,14 +150,14 @@ impl Estimate {
 fn write(out: &Path, found: &estimate::Estimate, recording: &Recording, seed: u64) -> Result<Summary> {
     let Recording { tactile, sensors, dropped, lost_samples, noisy, signed, .. } = recording;
     let parts = sensors.iter().enumerate().map(|(at, &sensor)| {
-        let (next_part, next_unexplained) = found.parts.others[at].first().copied().unzip();
-        let (part, unexplained) = (found.parts.labels[at], found.parts.left[at]);
+        let (next_part, next_unexplained) = found.parts.alternatives[at].first().copied().unzip();
+        let (part, unexplained) = (found.parts.labels[at], found.parts.residuals[at]);
         PartRow { sensor, part, unexplained, next_part, next_unexplained }
     });
     write_rows(&out.join("parts.csv"), parts)?;
     let row = |(sensor, fault): &(usize, Fault)| DroppedRow { sensor: *sensor, fault: fault.to_string() };
     write_rows_of(&out.join("dropped.csv"), &["sensor", "fault"], dropped.iter().map(row))?;
-    tree::write(out, &found.tree)?;
+    tree::write(out, &found.joints)?;
     let summary = Summary {
         samples: tactile.samples,
         sensors: sensors.len() + dropped.len(),
@@ -165,7 +165,7 @@ fn write(out: &Path, found: &estimate::Estimate, recording: &Recording, seed: u6
         lost_samples: *lost_samples,
         noisy: *noisy,
         signed: *signed,
-        parts: found.tree.parts.len(),
+        parts: found.joints.ranks.len(),
         seed,
         revision: env!("BODYSCHEMA_REVISION"),
     };
