@@ -11,7 +11,7 @@ use faer::Mat;
 use rayon::prelude::*;
 
 use super::als::Als;
-use super::roots::Roots;
+use super::roots::{Roots, product};
 use crate::numerics::eigen::largest;
 
 /// Largest rank of a motion subspace: velocity and angular velocity of a rigid body are six numbers.
@@ -68,7 +68,7 @@ impl Fit {
 
     /// The sum of w wᵀ over samples, k × k.
     pub fn scatter(&self) -> Mat<f64> {
-        self.motion.transpose() * &self.motion
+        product(self.motion.transpose(), self.motion.as_ref())
     }
 }
 
@@ -76,8 +76,8 @@ impl Roots {
     /// Where the iterations start: the principal components of series that are linear in the motion.
     pub fn start(&self) -> Start {
         let linear = if self.signed { self.values.clone() } else { self.differences() };
-        let loadings = principal_axes(&(linear.transpose() * &linear));
-        Start { motion: &linear * &loadings, loadings }
+        let loadings = principal_axes(&product(linear.transpose(), linear.as_ref()));
+        Start { motion: product(linear.as_ref(), loadings.as_ref()), loadings }
     }
 
     /// Finds c and w of a rank, at most that of the start, in so many iterations.
@@ -104,7 +104,7 @@ impl Roots {
     /// Residual sum of squares of a fit at each sample.
     pub fn residuals_of_samples(&self, fit: &Fit) -> Vec<f64> {
         let mut residuals = vec![0.0; self.samples()];
-        let predictions = &fit.motion * fit.loadings.transpose();
+        let predictions = product(fit.motion.as_ref(), fit.loadings.transpose());
         for sensor in 0..self.sensors() {
             let own = predictions.col_as_slice(sensor).iter().zip(self.values.col_as_slice(sensor));
             for (residual, (prediction, root)) in residuals.iter_mut().zip(own) {
@@ -148,7 +148,7 @@ impl Roots {
         let residuals = |sensor: usize| {
             let count = SENSORS.min(self.sensors() - sensor);
             let loadings = self.some_loadings(fit, sensor, count);
-            let predictions = &fit.motion * loadings.transpose();
+            let predictions = product(fit.motion.as_ref(), loadings.transpose());
             let share = |at: usize| {
                 let roots = self.values.col_as_slice(sensor + at);
                 let all: f64 = roots.iter().map(|root| root * root).sum();
@@ -171,7 +171,8 @@ fn principal_axes(squares: &Mat<f64>) -> Mat<f64> {
 
 /// Makes the columns of c orthonormal along its principal axes, and rotates w with it.
 fn orthonormalise(loadings: &mut Mat<f64>, motion: &mut Mat<f64>) {
-    let Ok(eigen) = largest((loadings.transpose() * &*loadings).as_ref(), loadings.ncols()) else { return };
+    let squares = product(loadings.transpose(), loadings.as_ref());
+    let Ok(eigen) = largest(squares.as_ref(), loadings.ncols()) else { return };
     let least = SPANNED * eigen.values[0];
     let rotation = |scale: &dyn Fn(f64) -> f64| {
         Mat::from_fn(eigen.vectors.nrows(), eigen.vectors.ncols(), |row, at| {
@@ -179,6 +180,6 @@ fn orthonormalise(loadings: &mut Mat<f64>, motion: &mut Mat<f64>) {
             if value > least { eigen.vectors[(row, at)] * scale(value.sqrt()) } else { 0.0 }
         })
     };
-    *loadings = &*loadings * rotation(&f64::recip);
-    *motion = &*motion * rotation(&|span| span);
+    *loadings = product(loadings.as_ref(), rotation(&f64::recip).as_ref());
+    *motion = product(motion.as_ref(), rotation(&|span| span).as_ref());
 }

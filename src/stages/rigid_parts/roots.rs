@@ -5,7 +5,8 @@
 //! c of the sensor and the motion w of the part. Pressures that are also negative (of an incompressible medium behind a
 //! sensor, say) have roots with a sign, c · w.
 
-use faer::Mat;
+use faer::linalg::matmul::matmul;
+use faer::{Accum, Mat, MatRef, Par};
 use rayon::prelude::*;
 
 use crate::stages::sense::Tactile;
@@ -73,7 +74,7 @@ impl Roots {
         let share = 1.0 / self.samples().max(1) as f64;
         let mean = |sensor| self.values.col_as_slice(sensor).iter().sum::<f64>() * share;
         let means = (0..self.sensors()).map(mean).collect();
-        (self.values.transpose() * &self.values * faer::Scale(share), means)
+        (product(self.values.transpose(), self.values.as_ref()) * faer::Scale(share), means)
     }
 
     /// Number of sensors.
@@ -94,7 +95,7 @@ impl Roots {
     /// Each sensor's root minus that of the sensor that feels least at the same samples: linear in w without censoring, if the
     /// two are opposite to each other and never feel at the same sample.
     pub fn differences(&self) -> Mat<f64> {
-        let together = self.values.transpose() * &self.values;
+        let together = product(self.values.transpose(), self.values.as_ref());
         let opposite = |sensor: usize| {
             let alive = (0..self.sensors()).filter(|other| together[(*other, *other)] > 0.0);
             let likeness = |other: usize| together[(sensor, other)] / together[(other, other)].sqrt();
@@ -103,6 +104,13 @@ impl Roots {
         let opposites: Vec<usize> = (0..self.sensors()).map(opposite).collect();
         &self.values - columns(&self.values, &opposites)
     }
+}
+
+/// The product of two matrices on one thread, whatever faer's global setting: sums depend on the number of threads.
+pub fn product(left: MatRef<'_, f64>, right: MatRef<'_, f64>) -> Mat<f64> {
+    let mut product = Mat::zeros(left.nrows(), right.ncols());
+    matmul(product.as_mut(), Accum::Replace, left, right, 1.0, Par::Seq);
+    product
 }
 
 /// Some columns.

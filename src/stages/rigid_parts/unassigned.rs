@@ -12,6 +12,7 @@ use rayon::prelude::*;
 use super::cluster::{Cluster, TOLERANCE};
 use super::faces::{connected_components, faces, similar};
 use super::medians::{outlier_limit, typical_size};
+use super::roots::product;
 use super::search::{MIN_FREEDOM, MIN_SAVING, Search, smallest};
 use super::subspace::{FACE_RANK, ROTATION_RANK};
 
@@ -158,7 +159,7 @@ impl Search<'_> {
         let k = cluster.fit.rank();
         let squares = |face: &Vec<usize>| {
             let loadings = self.roots.select(face).loadings(&cluster.fit);
-            let own = loadings.transpose() * &loadings;
+            let own = product(loadings.transpose(), loadings.as_ref());
             DMatrix::from_fn(k, k, |i, j| own[(i, j)])
         };
         let squares: Vec<DMatrix<f64>> = faces.iter().map(squares).collect();
