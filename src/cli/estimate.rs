@@ -27,13 +27,13 @@ use crate::stages::usable::Fault;
 
 /// Estimates parts and tree of any body from touch alone, such as your own robot (not in the paper).
 ///
-/// Reads pressures (T x M, any numbers) and writes into DIR: parts.csv (sensor,part,unexplained,next_part,next_unexplained),
-/// tree.csv (child,parent,confidence), edges.csv (part,other,agreement,confidence,in_tree), dropped.csv (sensor,fault: sensors
-/// that are dead, constant or not a number), summary.json and report.html, which shows parts, tree and touch.
+/// Reads pressures (T x M, any numbers) and writes into DIR: parts.csv (sensor,part,residual,next_part,next_residual), tree.csv
+/// (child,parent,support), edges.csv (part,other,correlation,support,in_tree), dropped.csv (sensor,fault: sensors that are
+/// dead, constant or not a number), summary.json and report.html, which shows parts, tree and touch.
 ///
 /// A part is a rigid body: one rigid motion explains what all its sensors feel. Each sensor is assigned to the part with the
-/// smallest residual: unexplained is the share of residual variance of the sensor, next_unexplained that for the next best
-/// part. Parts are joined as by `tree`: confidence is the bootstrap support of an edge, given the parts. Unless --settings says
+/// smallest residual: residual is the share of residual variance of the sensor, next_residual that for the next best part.
+/// Parts are joined as by `tree`: support is the bootstrap support of an edge, given the parts. Unless --settings says
 /// otherwise, pressures are quantised into eight levels for each sensor (reproduce/estimate.toml).
 #[derive(Args)]
 pub struct Estimate {
@@ -62,9 +62,9 @@ struct DroppedRow {
 struct PartRow {
     sensor: usize,
     part: usize,
-    unexplained: f64,
+    residual: f64,
     next_part: Option<usize>,
-    next_unexplained: Option<f64>,
+    next_residual: Option<f64>,
 }
 
 /// summary.json.
@@ -150,9 +150,9 @@ impl Estimate {
 fn write(out: &Path, found: &estimate::Estimate, recording: &Recording, seed: u64) -> Result<Summary> {
     let Recording { tactile, sensors, dropped, lost_samples, noisy, signed, .. } = recording;
     let parts = sensors.iter().enumerate().map(|(at, &sensor)| {
-        let (next_part, next_unexplained) = found.parts.alternatives[at].first().copied().unzip();
-        let (part, unexplained) = (found.parts.labels[at], found.parts.residuals[at]);
-        PartRow { sensor, part, unexplained, next_part, next_unexplained }
+        let (next_part, next_residual) = found.parts.alternatives[at].first().copied().unzip();
+        let (part, residual) = (found.parts.labels[at], found.parts.residuals[at]);
+        PartRow { sensor, part, residual, next_part, next_residual }
     });
     write_rows(&out.join("parts.csv"), parts)?;
     let row = |(sensor, fault): &(usize, Fault)| DroppedRow { sensor: *sensor, fault: fault.to_string() };

@@ -94,7 +94,7 @@ impl Shown<'_> {
         let edge = |edge: &Edge| TreeEdge {
             child: edge.child,
             parent: edge.parent,
-            confidence: Some(found.joints.support(edge)),
+            support: Some(found.joints.support(edge)),
         };
         let times = frames.samples().map(|sample| recording.samples[sample]);
         Scene {

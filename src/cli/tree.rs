@@ -24,10 +24,10 @@ use crate::stages::tree::Truth;
 /// Estimates how given parts are joined, from the speeds of their joints (not in the paper).
 ///
 /// Reads pressures (T x M, any numbers) and the part of each sensor, and writes into DIR: tree.csv
-/// (child,parent,confidence) and edges.csv (part,other,agreement,confidence,in_tree: all pairs of parts). Both parts of a
-/// joint feel its speed: agreement, 0 to 1, is the canonical correlation of that speed between two parts, and the tree is
-/// the spanning tree of greatest agreement. Confidence is the bootstrap support of an edge, given the parts: the share of
-/// trees over resampled blocks of time that have it.
+/// (child,parent,support) and edges.csv (part,other,correlation,support,in_tree: all pairs of parts). Both parts of a joint
+/// feel its speed: correlation, 0 to 1, is the canonical correlation of that speed between two parts, and the tree is the
+/// spanning tree of greatest correlation. Support is the bootstrap support of an edge, given the parts: the share of trees
+/// over resampled blocks of time that have it.
 #[derive(Args)]
 pub struct Tree {
     /// Pressures: a .npy or .csv file with a row for each sample and a column for each sensor
@@ -52,15 +52,15 @@ pub struct Tree {
 struct TreeRow {
     child: usize,
     parent: usize,
-    confidence: f64,
+    support: f64,
 }
 
 #[derive(Serialize)]
 struct EdgeRow {
     part: usize,
     other: usize,
-    agreement: f64,
-    confidence: f64,
+    correlation: f64,
+    support: f64,
     in_tree: bool,
 }
 
@@ -140,17 +140,17 @@ pub fn write(out: &Path, found: &Joints) -> Result<()> {
     let edges = found.tree.iter().map(|edge| TreeRow {
         child: edge.child,
         parent: edge.parent,
-        confidence: found.support(edge),
+        support: found.support(edge),
     });
-    write_rows_of(&out.join("tree.csv"), &["child", "parent", "confidence"], edges)?;
+    write_rows_of(&out.join("tree.csv"), &["child", "parent", "support"], edges)?;
     let pairs = found.pairs.iter().map(|pair| EdgeRow {
         part: pair.part,
         other: pair.other,
-        agreement: pair.correlation,
-        confidence: pair.support,
+        correlation: pair.correlation,
+        support: pair.support,
         in_tree: pair.in_tree,
     });
-    let columns = ["part", "other", "agreement", "confidence", "in_tree"];
+    let columns = ["part", "other", "correlation", "support", "in_tree"];
     Ok(write_rows_of(&out.join("edges.csv"), &columns, pairs)?)
 }
 

@@ -100,7 +100,7 @@ fn edge_table(scene: &Scene) -> Markup {
                     tr {
                         td data-label="part" { (edge.child) }
                         td data-label="joined to part" { (edge.parent) }
-                        td data-label="bootstrap support" { @if let Some(share) = edge.confidence { (percent(share)) " %" } }
+                        td data-label="bootstrap support" { @if let Some(share) = edge.support { (percent(share)) " %" } }
                     }
                 }
             }
