@@ -1,4 +1,7 @@
-//! Estimate the parts and the tree of any body from what its sensors felt: the stages for one's own robot, composed.
+//! Estimate the parts and the tree of any body from the pressures on its sensors: the stages for one's own robot, composed.
+//!
+//! Sensors are clustered into [rigid parts](crate::stages::rigid_parts), which are joined by the speeds of their
+//! [joints](crate::stages::joints).
 //!
 //! ```
 //! use bodyschema::estimate::estimate;
@@ -18,12 +21,12 @@
 //! let recording = Recording::new(tactile);
 //! let levels = Settings::load_over(Some(Base::ESTIMATE), None)?.quantise;
 //! let found = estimate(&recording, &levels, &mut stream(1, 1, "co-motion", 0), &|| ())?;
-//! for edge in &found.tree.tree {
-//!     let support = 100.0 * found.tree.confidence(edge);
+//! for edge in &found.joints.tree {
+//!     let support = 100.0 * found.joints.support(edge);
 //!     println!("part {} is joined to part {} (bootstrap support {support:.0} %)", edge.child, edge.parent);
 //! }
 //! println!("sensor {} is on part {}", recording.sensors[0], found.parts.labels[0]);
-//! # assert_eq!(found.tree.parts.len(), 5);
+//! # assert_eq!(found.joints.ranks.len(), 5);
 //! # Ok(())
 //! # }
 //! ```
@@ -31,9 +34,10 @@
 use rand::Rng;
 
 use crate::recording::Recording;
-use crate::stages::co_motion::{CoMotion, MIN_SENSORS, RigidParts, is_signed, rigid_parts, settle, spread};
 use crate::stages::distance::{Distances, information_metric};
+use crate::stages::joints::{Joints, refine};
 use crate::stages::quantise::{Quantise, quantise};
+use crate::stages::rigid_parts::{MIN_SENSORS, RigidParts, is_signed, rigid_parts, stratified};
 use crate::stages::sense::Tactile;
 
 /// Sensors whose distances are computed, spread over all.
@@ -41,34 +45,34 @@ const MAX_SENSORS: usize = 800;
 /// Samples that distances are computed from, spread over all.
 const MAX_SAMPLES: usize = 20_000;
 
-/// What was found.
+/// The estimated parts and joints of a body.
 #[derive(Debug)]
 pub struct Estimate {
-    /// The part of each sensor.
+    /// The part of each sensor of the recording; none is unassigned.
     pub parts: RigidParts,
-    /// The tree over the parts.
-    pub tree: CoMotion,
-    /// The sensors whose distances were computed, rising.
+    /// How the parts are joined.
+    pub joints: Joints,
+    /// The sensors whose distances were computed, as the recording counts them, rising.
     pub mapped: Vec<usize>,
-    /// Their distances.
+    /// Their distances, in bits.
     pub distances: Distances,
 }
 
-/// Too few sensors tell something.
+/// A recording of too few sensors.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("{usable} of {all} sensors feel anything usable, but estimating parts needs at least {MIN_SENSORS}")]
 pub struct TooFewSensors {
-    /// Sensors that tell something.
+    /// Sensors of the recording.
     pub usable: usize,
-    /// All sensors.
+    /// All sensors, with those that were dropped.
     pub all: usize,
 }
 
 /// Estimates the parts and the tree.
 ///
-/// In: a [`Recording`], and how pressures are quantised for distances. Out: the part of each of its sensors, and the tree over the parts with
-/// the bootstrap support of each edge, given the parts. Calls `tick` after each of the three steps: distances, parts, tree. The same
-/// recording and the same state of `rng` give the same bytes, whatever the number of threads.
+/// In: a [`Recording`], and how its pressures are quantised for distances. Out: the part of each of its sensors, and the tree over
+/// the parts with the bootstrap support of each edge, given the parts. Calls `tick` after each of the three steps: distances,
+/// parts, joints. The same recording and state of `rng` give the same bytes, whatever the number of threads.
 ///
 /// # Errors
 /// If the recording has fewer sensors than [`MIN_SENSORS`].
@@ -85,27 +89,27 @@ pub fn estimate(
     tick();
     let parts = rigid_parts(&recording.tactile, &sensors, &distances);
     tick();
-    let (parts, tree) = settle(&recording.tactile, parts, rng);
+    let (parts, joints) = refine(&recording.tactile, parts, rng);
     tick();
-    Ok(Estimate { parts, tree, mapped: sensors, distances })
+    Ok(Estimate { parts, joints, mapped: sensors, distances })
 }
 
 /// Some sensors, spread over all and rising, and their distances.
 pub fn distances(tactile: &Tactile, levels: &Quantise) -> (Vec<usize>, Distances) {
-    let sensors: Vec<usize> = spread(tactile.sensors(), MAX_SENSORS).collect();
+    let sensors: Vec<usize> = stratified(tactile.sensors(), MAX_SENSORS).collect();
     let distances = information_metric(&quantise(&excerpt(tactile, &sensors), levels));
     (sensors, distances)
 }
 
 /// Pressures of some sensors at some samples, made positive in the same order: each sensor's minus its smallest negative one.
 fn excerpt(tactile: &Tactile, sensors: &[usize]) -> Tactile {
-    let times: Vec<usize> = spread(tactile.samples, MAX_SAMPLES).collect();
+    let samples: Vec<usize> = stratified(tactile.samples, MAX_SAMPLES).collect();
     let signed = is_signed(tactile);
     let series: Vec<&[f32]> = tactile.series().collect();
     let own = |&sensor: &usize| {
-        let own: Vec<f32> = times.iter().map(|&t| series[sensor][t]).collect();
+        let own: Vec<f32> = samples.iter().map(|&t| series[sensor][t]).collect();
         let least = if signed { own.iter().copied().fold(0.0, f32::min) } else { 0.0 };
         own.into_iter().map(move |pressure| pressure - least)
     };
-    Tactile { samples: times.len(), pressures: sensors.iter().flat_map(own).collect() }
+    Tactile { samples: samples.len(), pressures: sensors.iter().flat_map(own).collect() }
 }

@@ -1,11 +1,11 @@
 //! One's own recording: what sensors felt, cleaned, and what became of each sensor and each sample.
 //!
 //! In: [`Tactile`] pressures of all sensors, of any sign, NaN where there is no value
-//! ([`read_touch`](crate::files::touch::read_touch) reads them). Out: a [`Recording`], which [`estimate`](crate::estimate) and the tree
-//! over given parts take.
+//! ([`read_touch`](crate::files::touch::read_touch) reads them). Out: a [`Recording`], which
+//! [`estimate`](crate::estimate::estimate) takes; [`joints`](crate::stages::joints::joints) takes its pressures and known parts.
 
-use crate::stages::co_motion::is_signed;
 use crate::stages::noise::above_noise;
+use crate::stages::rigid_parts::is_signed;
 use crate::stages::sense::Tactile;
 use crate::stages::tree::Truth;
 use crate::stages::usable::{Fault, Usable, usable};
@@ -25,13 +25,13 @@ pub struct Recording {
     pub lost_samples: usize,
     /// How many sensors have noise.
     pub noisy: usize,
-    /// Whether pressures below 0 tell as much as those above.
+    /// Whether negative pressures are signal, not noise about 0.
     pub signed: bool,
 }
 
 impl Recording {
-    /// Cleans a recording: leaves out samples at which most sensors have no value, then sensors that tell nothing, and takes noise off
-    /// the others.
+    /// Cleans a recording of M sensors: drops samples at which most sensors have no value, then sensors that are dead, constant or
+    /// not finite, and smooths the noisy ones of the others. It may drop all.
     pub fn new(tactile: Tactile) -> Self {
         let Usable { tactile, sensors, dropped, lost_samples, samples } = usable(tactile);
         let (tactile, noisy) = above_noise(tactile);

@@ -121,9 +121,9 @@ fn stages_by_hand_repeat_the_experiment() {
         "tree body/tactile.npy --parts body/labels.csv --labels body/labels.csv --tree body/tree.csv --out joined",
     );
     assert!(told.contains("adjusted Rand index 1.000, true tree recovered"), "{told}");
-    assert_eq!(header(&folder.path().join("joined/tree.csv")), "child,parent,confidence");
+    assert_eq!(header(&folder.path().join("joined/tree.csv")), "child,parent,support");
     assert_eq!(rows(&folder.path().join("joined/tree.csv")).len(), 4);
-    assert_eq!(header(&folder.path().join("joined/edges.csv")), "part,other,agreement,confidence,in_tree");
+    assert_eq!(header(&folder.path().join("joined/edges.csv")), "part,other,correlation,support,in_tree");
     assert_eq!(rows(&folder.path().join("joined/edges.csv")).len(), 10);
     assert!(summary.contains("eligible samples that recover the true tree"), "{summary}");
 

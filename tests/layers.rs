@@ -24,7 +24,7 @@ const ROOMS: [&str; 12] = [
 ];
 
 /// The stages in order: each imports only those before it, and `baselines` and `schema` never each other.
-const STAGES: [&str; 14] = [
+const STAGES: [&str; 15] = [
     "tree",
     "agent",
     "simulate",
@@ -33,7 +33,8 @@ const STAGES: [&str; 14] = [
     "noise",
     "quantise",
     "distance",
-    "co_motion",
+    "rigid_parts",
+    "joints",
     "body_map",
     "mixture",
     "baselines",

@@ -78,7 +78,7 @@ fn look(page: &str, folder: &Path, motion: u32, options: &[&str]) -> Option<Vec<
 
 const WEBGL: [&str; 3] = ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
 
-/// A folder with a simulation, and with an estimate of it that has the true parts and edges of other confidences.
+/// A folder with a simulation, and with an estimate of it that has the true parts and edges of a support of 75 %.
 fn simulated() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name);
@@ -88,8 +88,7 @@ fn simulated() -> tempfile::TempDir {
     fs::copy(at("body/labels.csv"), at("found/parts.csv")).unwrap();
     let tree = fs::read_to_string(at("body/tree.csv")).unwrap();
     let edges = tree.lines().skip(1).map(|edge| format!("{edge},0.75\n"));
-    fs::write(at("found/tree.csv"), format!("child,parent,confidence\n{}", edges.collect::<String>()))
-        .unwrap();
+    fs::write(at("found/tree.csv"), format!("child,parent,support\n{}", edges.collect::<String>())).unwrap();
     folder
 }
 

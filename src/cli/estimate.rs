@@ -21,19 +21,19 @@ use crate::numerics::rng::stream;
 use crate::recording::Recording;
 use crate::report::estimated::page;
 use crate::settings::Base;
-use crate::stages::co_motion::MIN_SENSORS;
 use crate::stages::evaluate::score;
+use crate::stages::rigid_parts::MIN_SENSORS;
 use crate::stages::usable::Fault;
 
 /// Estimates parts and tree of any body from touch alone, such as your own robot (not in the paper).
 ///
-/// Reads pressures (T x M, any numbers) and writes into DIR: parts.csv (sensor,part,unexplained,next_part,next_unexplained),
-/// tree.csv (child,parent,confidence), edges.csv (part,other,agreement,confidence,in_tree), dropped.csv (sensor,fault: sensors
-/// that are dead, constant or not a number), summary.json and report.html, which shows parts, tree and touch.
+/// Reads pressures (T x M, any numbers) and writes into DIR: parts.csv (sensor,part,residual,next_part,next_residual), tree.csv
+/// (child,parent,support), edges.csv (part,other,correlation,support,in_tree), dropped.csv (sensor,fault: sensors that are
+/// dead, constant or not a number), summary.json and report.html, which shows parts, tree and touch.
 ///
 /// A part is a rigid body: one rigid motion explains what all its sensors feel. Each sensor is assigned to the part with the
-/// smallest residual: unexplained is the share of residual variance of the sensor, next_unexplained that for the next best
-/// part. Parts are joined as by `tree`: confidence is the bootstrap support of an edge, given the parts. Unless --settings says
+/// smallest residual: residual is the share of residual variance of the sensor, next_residual that for the next best part.
+/// Parts are joined as by `tree`: support is the bootstrap support of an edge, given the parts. Unless --settings says
 /// otherwise, pressures are quantised into eight levels for each sensor (reproduce/estimate.toml).
 #[derive(Args)]
 pub struct Estimate {
@@ -62,9 +62,9 @@ struct DroppedRow {
 struct PartRow {
     sensor: usize,
     part: usize,
-    unexplained: f64,
+    residual: f64,
     next_part: Option<usize>,
-    next_unexplained: Option<f64>,
+    next_residual: Option<f64>,
 }
 
 /// summary.json.
@@ -130,16 +130,16 @@ impl Estimate {
             out.display()
         ))?;
         if summary.parts == 1 {
-            let left = mean(&found.parts.left).value.unwrap_or(0.0);
+            let residual = mean(&found.parts.residuals).value.unwrap_or(0.0);
             say(format!(
                 "no two parts can be distinguished: the residual variance of a single rigid motion is {:.1} %{}",
-                100.0 * left,
-                if left < 0.05 { "; no joint seems to move" } else { "" }
+                100.0 * residual,
+                if residual < 0.05 { "; no joint seems to move" } else { "" }
             ))?;
         }
-        tree::print(&found.tree, &found.parts.labels)?;
+        tree::print(&found.joints, &found.parts.labels)?;
         if let Some(truth) = truth {
-            let score = score(&found.parts.labels, &found.tree.tree, &recording.truth(&truth), 1.0);
+            let score = score(&found.parts.labels, &found.joints.tree, &recording.truth(&truth), 1.0);
             tree::print_score(&score)?;
         }
         Ok(ExitCode::SUCCESS)
@@ -150,14 +150,14 @@ impl Estimate {
 fn write(out: &Path, found: &estimate::Estimate, recording: &Recording, seed: u64) -> Result<Summary> {
     let Recording { tactile, sensors, dropped, lost_samples, noisy, signed, .. } = recording;
     let parts = sensors.iter().enumerate().map(|(at, &sensor)| {
-        let (next_part, next_unexplained) = found.parts.others[at].first().copied().unzip();
-        let (part, unexplained) = (found.parts.labels[at], found.parts.left[at]);
-        PartRow { sensor, part, unexplained, next_part, next_unexplained }
+        let (next_part, next_residual) = found.parts.alternatives[at].first().copied().unzip();
+        let (part, residual) = (found.parts.labels[at], found.parts.residuals[at]);
+        PartRow { sensor, part, residual, next_part, next_residual }
     });
     write_rows(&out.join("parts.csv"), parts)?;
     let row = |(sensor, fault): &(usize, Fault)| DroppedRow { sensor: *sensor, fault: fault.to_string() };
     write_rows_of(&out.join("dropped.csv"), &["sensor", "fault"], dropped.iter().map(row))?;
-    tree::write(out, &found.tree)?;
+    tree::write(out, &found.joints)?;
     let summary = Summary {
         samples: tactile.samples,
         sensors: sensors.len() + dropped.len(),
@@ -165,7 +165,7 @@ fn write(out: &Path, found: &estimate::Estimate, recording: &Recording, seed: u6
         lost_samples: *lost_samples,
         noisy: *noisy,
         signed: *signed,
-        parts: found.tree.parts.len(),
+        parts: found.joints.ranks.len(),
         seed,
         revision: env!("BODYSCHEMA_REVISION"),
     };

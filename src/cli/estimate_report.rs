@@ -41,16 +41,16 @@ impl Shown<'_> {
     }
 
     fn answers(&self, found: &Estimate, recording: &Recording) -> Vec<String> {
-        let tree = &found.tree;
-        let sure = tree.tree.iter().filter(|edge| tree.confidence(edge) >= 0.95).count();
+        let joints = &found.joints;
+        let sure = joints.tree.iter().filter(|edge| joints.support(edge) >= 0.95).count();
         let mut answers = vec![format!(
             "{} parts of {} sensors; {sure} of {} joints have a bootstrap support of at least 95 % (given the parts)",
-            tree.parts.len(),
+            joints.ranks.len(),
             recording.sensors.len(),
-            tree.tree.len()
+            joints.tree.len()
         )];
         if let Some(truth) = self.truth {
-            let score = score(&found.parts.labels, &tree.tree, &recording.truth(truth), 1.0);
+            let score = score(&found.parts.labels, &joints.tree, &recording.truth(truth), 1.0);
             answers.push(format!("Against the truth: {}", in_words(&score)));
         }
         answers
@@ -80,7 +80,7 @@ impl Shown<'_> {
     fn scene(&self, found: &Estimate, recording: &Recording) -> Scene {
         let count = recording.all_sensors();
         let frames = Frames::of(&recording.tactile, 0, Frames::every(self.interval), Frames::ROOM);
-        // A sensor that was left out felt nothing that counts.
+        // A sensor that was left out has no touch.
         let mut touch = vec![0.0; frames.count * count];
         for (series, &sensor) in recording.tactile.series().zip(&recording.sensors) {
             frames.samples().enumerate().for_each(|(at, sample)| touch[at * count + sensor] = series[sample]);
@@ -94,7 +94,7 @@ impl Shown<'_> {
         let edge = |edge: &Edge| TreeEdge {
             child: edge.child,
             parent: edge.parent,
-            confidence: Some(found.tree.confidence(edge)),
+            support: Some(found.joints.support(edge)),
         };
         let times = frames.samples().map(|sample| recording.samples[sample]);
         Scene {
@@ -107,20 +107,20 @@ impl Shown<'_> {
             body: None,
             map: self.map(found, recording),
             truth: self.truth.map(Parts::of_truth),
-            estimate: Some(Parts { of, tree: found.tree.tree.iter().map(edge).collect() }),
+            estimate: Some(Parts { of, tree: found.joints.tree.iter().map(edge).collect() }),
         }
     }
 }
 
 fn parts(found: &Estimate) -> Vec<PartLine> {
-    let mut left: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
-    for (&part, &share) in found.parts.labels.iter().zip(&found.parts.left) {
-        left.entry(part).or_default().push(share);
+    let mut residuals: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
+    for (&part, &residual) in found.parts.labels.iter().zip(&found.parts.residuals) {
+        residuals.entry(part).or_default().push(residual);
     }
-    let line = |(part, mut left): (usize, Vec<f64>)| {
-        left.sort_by(f64::total_cmp);
-        let components = found.tree.parts.iter().find(|(label, _)| *label == part).map_or(0, |(_, k)| *k);
-        PartLine { part, sensors: left.len(), components, unexplained: quantile(&left, 0.5) }
+    let line = |(part, mut own): (usize, Vec<f64>)| {
+        own.sort_by(f64::total_cmp);
+        let rank = found.joints.ranks.get(&part).copied().unwrap_or(0);
+        PartLine { part, sensors: own.len(), rank, residual: quantile(&own, 0.5) }
     };
-    left.into_iter().map(line).collect()
+    residuals.into_iter().map(line).collect()
 }

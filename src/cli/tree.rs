@@ -16,17 +16,18 @@ use crate::numerics::partition::sizes;
 use crate::numerics::rng::stream;
 use crate::recording::Recording;
 use crate::report::text_tree::text_tree;
-use crate::stages::co_motion::{CoMotion, MAX_COMPONENTS, Pair, co_motion};
 use crate::stages::evaluate::{Score, score};
+use crate::stages::joints::{Joints, Pair, joints};
+use crate::stages::rigid_parts::MAX_RANK;
 use crate::stages::tree::Truth;
 
 /// Estimates how given parts are joined, from the speeds of their joints (not in the paper).
 ///
 /// Reads pressures (T x M, any numbers) and the part of each sensor, and writes into DIR: tree.csv
-/// (child,parent,confidence) and edges.csv (part,other,agreement,confidence,in_tree: all pairs of parts). Both parts of a
-/// joint feel its speed: agreement, 0 to 1, is the canonical correlation of that speed between two parts, and the tree is
-/// the spanning tree of greatest agreement. Confidence is the bootstrap support of an edge, given the parts: the share of
-/// trees over resampled blocks of time that have it.
+/// (child,parent,support) and edges.csv (part,other,correlation,support,in_tree: all pairs of parts). Both parts of a joint
+/// feel its speed: correlation, 0 to 1, is the canonical correlation of that speed between two parts, and the tree is the
+/// spanning tree of greatest correlation. Support is the bootstrap support of an edge, given the parts: the share of trees
+/// over resampled blocks of time that have it.
 #[derive(Args)]
 pub struct Tree {
     /// Pressures: a .npy or .csv file with a row for each sample and a column for each sensor
@@ -36,7 +37,7 @@ pub struct Tree {
     #[arg(long, value_name = "FILE")]
     parts: PathBuf,
     /// Rank of the motion subspace of each part, 1 to 6 [default: chosen for each part from the data]
-    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u64).range(1..=MAX_COMPONENTS as u64))]
+    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u64).range(1..=MAX_RANK as u64))]
     components: Option<u64>,
     #[arg(long, value_name = "S", help = with_default("Master seed of all random numbers", paper().experiment.seed))]
     seed: Option<u64>,
@@ -51,15 +52,15 @@ pub struct Tree {
 struct TreeRow {
     child: usize,
     parent: usize,
-    confidence: f64,
+    support: f64,
 }
 
 #[derive(Serialize)]
 struct EdgeRow {
     part: usize,
     other: usize,
-    agreement: f64,
-    confidence: f64,
+    correlation: f64,
+    support: f64,
     in_tree: bool,
 }
 
@@ -82,8 +83,8 @@ impl Tree {
         refuse_truth(out)?;
         prepare_folder(out)?;
         let mut rng = stream(self.seed.unwrap_or(paper().experiment.seed), 1, "co-motion", 0);
-        let components = self.components.map(|k| k as usize);
-        let found = co_motion(&recording.tactile, &own, components, &mut rng);
+        let rank = self.components.map(|k| k as usize);
+        let found = joints(&recording.tactile, &own, rank, &mut rng);
         write(out, &found)?;
         print(&found, &labels)?;
         if let Some(truth) = truth {
@@ -135,37 +136,37 @@ pub fn in_words(score: &Score) -> String {
 }
 
 /// Writes tree.csv and edges.csv.
-pub fn write(out: &Path, found: &CoMotion) -> Result<()> {
+pub fn write(out: &Path, found: &Joints) -> Result<()> {
     let edges = found.tree.iter().map(|edge| TreeRow {
         child: edge.child,
         parent: edge.parent,
-        confidence: found.confidence(edge),
+        support: found.support(edge),
     });
-    write_rows_of(&out.join("tree.csv"), &["child", "parent", "confidence"], edges)?;
+    write_rows_of(&out.join("tree.csv"), &["child", "parent", "support"], edges)?;
     let pairs = found.pairs.iter().map(|pair| EdgeRow {
         part: pair.part,
         other: pair.other,
-        agreement: pair.agreement,
-        confidence: pair.confidence,
+        correlation: pair.correlation,
+        support: pair.support,
         in_tree: pair.in_tree,
     });
-    let columns = ["part", "other", "agreement", "confidence", "in_tree"];
+    let columns = ["part", "other", "correlation", "support", "in_tree"];
     Ok(write_rows_of(&out.join("edges.csv"), &columns, pairs)?)
 }
 
 /// Prints the tree, with the bootstrap support of each edge.
-pub fn print(found: &CoMotion, labels: &[usize]) -> Result<()> {
+pub fn print(found: &Joints, labels: &[usize]) -> Result<()> {
     let sizes = sizes(labels);
-    let place = |part: usize| found.parts.iter().position(|(label, _)| *label == part).unwrap_or_default();
-    let edge =
-        |pair: &Pair| (place(pair.part), place(pair.other), format!("{:.0} %", 100.0 * pair.confidence));
+    let parts: Vec<(usize, usize)> = found.ranks.iter().map(|(part, rank)| (*part, *rank)).collect();
+    let place = |part: usize| parts.iter().position(|(label, _)| *label == part).unwrap_or_default();
+    let edge = |pair: &Pair| (place(pair.part), place(pair.other), format!("{:.0} %", 100.0 * pair.support));
     let edges: Vec<_> = found.pairs.iter().filter(|pair| pair.in_tree).map(edge).collect();
     let name = |at: usize| {
-        let (part, components) = found.parts[at];
-        format!("part {part} ({} sensors, motion of rank {components})", sizes[&part])
+        let (part, rank) = parts[at];
+        format!("part {part} ({} sensors, motion of rank {rank})", sizes[&part])
     };
     if !edges.is_empty() {
         say("tree, with the bootstrap support of each edge (given the parts):")?;
     }
-    text_tree(found.parts.len(), &edges, &name).into_iter().try_for_each(say)
+    text_tree(parts.len(), &edges, &name).into_iter().try_for_each(say)
 }

@@ -15,7 +15,7 @@ use crate::report::viewer::page::page;
 /// Writes an interactive page for a browser: a moving body, what its skin feels, its body map and its tree (not in the paper).
 ///
 /// DIR is a folder of `simulate` or `estimate`, or one with data of your own: tactile.npy (or .csv), and, if available, parts.csv
-/// (sensor,part) and tree.csv (child,parent,confidence). The body is shown if DIR has solids.csv, sensors.csv and poses.npy, as
+/// (sensor,part) and tree.csv (child,parent,support). The body is shown if DIR has solids.csv, sensors.csv and poses.npy, as
 /// `simulate` writes them. Without body-map.npy, a map of three dimensions is computed as by `distance` and `map`.
 #[derive(Args)]
 pub struct View {

@@ -28,10 +28,10 @@ pub struct PartLine {
     pub part: usize,
     /// How many sensors are on it.
     pub sensors: usize,
-    /// How many numbers its sensors feel of its motion.
-    pub components: usize,
-    /// The share of their squares that its motion leaves, in the middle of its sensors.
-    pub unexplained: f64,
+    /// The rank of its motion subspace.
+    pub rank: usize,
+    /// The residual variance of its sensors, as a share: the median over them.
+    pub residual: f64,
 }
 
 /// The page, which needs no other file and no network.
@@ -74,12 +74,12 @@ fn part_table(parts: &[PartLine]) -> Markup {
         table {
             thead { tr { @for name in ["part", "sensors", "rank", "residual variance"] { th scope="col" { (name) } } } }
             tbody {
-                @for PartLine { part, sensors, components, unexplained } in parts {
+                @for PartLine { part, sensors, rank, residual } in parts {
                     tr {
                         td data-label="part" { (part) }
                         td data-label="sensors" { (sensors) }
-                        td data-label="rank" { (components) }
-                        td data-label="residual variance" { (percent(*unexplained)) " %" }
+                        td data-label="rank" { (rank) }
+                        td data-label="residual variance" { (percent(*residual)) " %" }
                     }
                 }
             }
@@ -100,7 +100,7 @@ fn edge_table(scene: &Scene) -> Markup {
                     tr {
                         td data-label="part" { (edge.child) }
                         td data-label="joined to part" { (edge.parent) }
-                        td data-label="bootstrap support" { @if let Some(share) = edge.confidence { (percent(share)) " %" } }
+                        td data-label="bootstrap support" { @if let Some(share) = edge.support { (percent(share)) " %" } }
                     }
                 }
             }

@@ -11,7 +11,15 @@
 //! | 6 | [`schema`] | body map → [`Sample`](schema::Sample)s: component of each sensor, tree | equations 1 to 22 |
 //! | 7 | [`evaluate`] | draw, truth → [`Score`](evaluate::Score): adjusted Rand index, tree right or wrong | section 5.2 |
 //!
-//! Beside the paper, [`usable`] drops sensors that tell nothing, [`noise`] what is no touch, and [`co_motion`] finds rigid parts and how they are joined.
+//! Beside the paper, for one's own recordings:
+//!
+//! | module | in → out |
+//! |---|---|
+//! | [`usable`] | pressures → those of the sensors and samples that tell something |
+//! | [`noise`] | pressures → smoothed, with 0 where there is no touch |
+//! | [`rigid_parts`] | pressures, distances → [`RigidParts`](rigid_parts::RigidParts): the part of each sensor, by motion subspaces |
+//! | [`joints`] | pressures, parts → [`Joints`](joints::Joints): a tree over parts, by joint speeds, and the support of its edges |
+//!
 //! Beside stage 6, [`baselines`] cluster the same body map; [`mixture`] holds what both build on, [`tree`] the trees.
 //! M is the number of sensors, T the number of samples, N the number of levels, d the number of dimensions.
 //!
@@ -21,12 +29,13 @@
 pub mod agent;
 pub mod baselines;
 pub mod body_map;
-pub mod co_motion;
 pub mod distance;
 pub mod evaluate;
+pub mod joints;
 pub mod mixture;
 pub mod noise;
 pub mod quantise;
+pub mod rigid_parts;
 pub mod schema;
 pub mod sense;
 pub mod simulate;

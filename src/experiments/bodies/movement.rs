@@ -9,9 +9,9 @@ use crate::estimate::estimate;
 use crate::numerics::rng::stream;
 use crate::recording::Recording as Cleaned;
 use crate::settings::Settings;
-use crate::stages::co_motion::co_motion_tree;
 use crate::stages::distance::information_metric;
 use crate::stages::evaluate::{joins, parts, parts_match, score};
+use crate::stages::joints::joint_tree;
 use crate::stages::quantise::quantise;
 use crate::stages::sense::{Tactile, sense};
 use crate::stages::simulate::simulate;
@@ -172,9 +172,9 @@ impl Movement<'_> {
         };
         let truth = recording.truth(seen.truth);
         let tactile = &recording.tactile;
-        let (labels, tree) = (&estimated.parts.labels, &estimated.tree);
+        let (labels, joints) = (&estimated.parts.labels, &estimated.joints);
         let given: Vec<Option<usize>> = truth.labels.iter().copied().map(Some).collect();
-        let tree_of_true_parts = co_motion_tree(tactile, &given);
+        let tree_of_true_parts = joint_tree(tactile, &given);
         let symbols = quantise(tactile, levels);
         let distances = information_metric(&symbols);
         let [nearest, chow_liu] = peers::trees(labels, &distances, &symbols);
@@ -183,9 +183,9 @@ impl Movement<'_> {
         let mixture_right = |at: usize| {
             mixtures.as_ref().is_some_and(|draws| scored(&draws[at].labels, &draws[at].tree).tree_correct)
         };
-        let found = scored(labels, &tree.tree);
+        let found = scored(labels, &joints.tree);
         let row = Row {
-            parts: tree.parts.len(),
+            parts: joints.ranks.len(),
             ari: found.ari,
             parts_right: parts_match(labels, &truth),
             tree_right: found.tree_correct,
@@ -203,10 +203,10 @@ impl Movement<'_> {
             movement: row.movement,
             samples,
             noise,
-            confidence: tree.confidence(edge),
+            confidence: joints.support(edge),
             right: joins(labels, edge, &truth),
         };
-        let edges = tree.tree.iter().map(edge).collect();
+        let edges = joints.tree.iter().map(edge).collect();
         (row, edges)
     }
 }

@@ -128,15 +128,15 @@ struct EdgeRow {
     child: usize,
     #[serde(alias = "other")]
     parent: usize,
-    #[serde(alias = "probability")]
-    confidence: Option<f64>,
+    #[serde(alias = "probability", alias = "confidence")]
+    support: Option<f64>,
     in_tree: Option<bool>,
 }
 
-/// True parts and tree. A tree with confidences is an estimated one, and left out.
+/// True parts and tree. A tree with the support of its edges is an estimated one, and left out.
 fn true_parts(labels: &Path, tree: &Path, sensors: usize) -> Result<Parts, FileError> {
     let mut truth = parts(labels, &[tree.to_owned()], sensors)?;
-    truth.tree.retain(|edge| edge.confidence.is_none());
+    truth.tree.retain(|edge| edge.support.is_none());
     Ok(truth)
 }
 
@@ -171,12 +171,11 @@ fn parts(file: &Path, trees: &[PathBuf], sensors: usize) -> Result<Parts, FileEr
     let rows: Vec<EdgeRow> = read_rows(path)?;
     let known = |part: usize| of.contains(&Some(part));
     let mut tree = Vec::new();
-    for EdgeRow { child, parent, confidence, .. } in rows.into_iter().filter(|row| row.in_tree != Some(false))
-    {
+    for EdgeRow { child, parent, support, .. } in rows.into_iter().filter(|row| row.in_tree != Some(false)) {
         if let Some(part) = [child, parent].into_iter().find(|part| !known(*part)) {
             return Err(FileError::new(path, format!("part {part} has no sensor in {}", file.display())));
         }
-        tree.push(TreeEdge { child, parent, confidence });
+        tree.push(TreeEdge { child, parent, support });
     }
     Ok(Parts { of, tree })
 }

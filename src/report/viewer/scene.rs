@@ -52,20 +52,20 @@ pub struct TreeEdge {
     pub child: usize,
     /// The other end.
     pub parent: usize,
-    /// How sure it is, 0 to 1, where the method says so.
-    pub confidence: Option<f64>,
+    /// Bootstrap support or probability, 0 to 1, where the method says so.
+    pub support: Option<f64>,
 }
 
 impl Parts {
     /// The true ones.
     pub fn of_truth(Truth { labels, tree }: &Truth) -> Self {
-        let edge = |&(child, parent): &(usize, usize)| TreeEdge { child, parent, confidence: None };
+        let edge = |&(child, parent): &(usize, usize)| TreeEdge { child, parent, support: None };
         Self { of: labels.iter().copied().map(Some).collect(), tree: tree.iter().map(edge).collect() }
     }
 
     /// Those of one draw, which says nothing of how sure an edge is.
     pub fn of_draw(Sample { labels, tree, .. }: &Sample) -> Self {
-        let edge = |&Edge { child, parent }: &Edge| TreeEdge { child, parent, confidence: None };
+        let edge = |&Edge { child, parent }: &Edge| TreeEdge { child, parent, support: None };
         Self { of: labels.iter().copied().map(Some).collect(), tree: tree.iter().map(edge).collect() }
     }
 }

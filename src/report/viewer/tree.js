@@ -8,9 +8,9 @@ function drawTree(title, { of, tree }, colours, onPart) {
   of.filter(part => part !== null).forEach(part => sizes.set(part, (sizes.get(part) ?? 0) + 1));
   const parts = [...sizes.keys()].sort((a, b) => a - b);
   const near = new Map(parts.map(part => [part, []]));
-  for (const { child, parent, confidence } of tree) {
-    near.get(child).push([parent, confidence]);
-    near.get(parent).push([child, confidence]);
+  for (const { child, parent, support } of tree) {
+    near.get(child).push([parent, support]);
+    near.get(parent).push([child, support]);
   }
   const places = layout(parts, near), values = [...places.values()];
   const across = 84, down = 64, margin = 24;
@@ -20,18 +20,18 @@ function drawTree(title, { of, tree }, colours, onPart) {
   const svg = element("svg", { viewBox: `0 0 ${width} ${height}`, width, height, role: "group", "aria-label": title });
   const drawn = new Set();
   for (const part of parts) {
-    for (const [other, confidence] of near.get(part)) {
+    for (const [other, support] of near.get(part)) {
       const key = [part, other].sort((a, b) => a - b).join(" ");
       if (drawn.has(key)) continue;
       drawn.add(key);
-      const [[x1, y1], [x2, y2]] = [at(part), at(other)], sure = confidence ?? 1;
+      const [[x1, y1], [x2, y2]] = [at(part), at(other)], sure = support ?? 1;
       svg.append(element("line", { x1, y1, x2, y2, "stroke-width": 1 + 3 * sure, "stroke-dasharray": sure < 0.5 ? "4 4" : "none" }));
-      if (confidence === null) continue;
+      if (support === null) continue;
       // Nearer to the lower end, where edges of one part are apart.
       const [upper, lower] = y1 < y2 ? [[x1, y1], [x2, y2]] : [[x2, y2], [x1, y1]];
       const [x, y] = [0, 1].map(axis => 0.45 * upper[axis] + 0.55 * lower[axis]);
       const words = element("text", { x, y: y + 4, class: "edge" });
-      words.textContent = `${Math.round(100 * confidence)} %`;
+      words.textContent = `${Math.round(100 * support)} %`;
       svg.append(words);
     }
   }

@@ -1,13 +1,13 @@
-//! Planar parts in a row, and what sensors simulate_and_sense, for tests.
+//! Planar parts in a row, and their motions, for tests.
 
 use rand::RngExt;
 
-use super::motion::Motion;
 use crate::numerics::rng::stream;
+use crate::stages::rigid_parts::MotionSubspace;
 
-/// Planar parts in a row, each joined to the next: what each feels of its velocity across, and of its rate; and what the ends of each
-/// feel of its velocity along.
-pub fn row(parts: usize, samples: usize) -> (Vec<Motion>, Vec<Motion>) {
+/// Planar parts in a row, each joined to the next: the motion that the sides of each feel, velocity across and angular velocity;
+/// and the motion that its ends feel, velocity along.
+pub fn row(parts: usize, samples: usize) -> (Vec<MotionSubspace>, Vec<MotionSubspace>) {
     let mut rng = stream(1, 1, "row", 0);
     let mut across = vec![Vec::new(); parts];
     let mut along = vec![Vec::new(); parts];
@@ -27,14 +27,7 @@ pub fn row(parts: usize, samples: usize) -> (Vec<Motion>, Vec<Motion>) {
             along[part].push(velocity[0]);
         }
     }
-    let motions = |values: Vec<Vec<f64>>, components| {
-        values.into_iter().map(|values| Motion { components, values }).collect()
-    };
+    let motions =
+        |bases: Vec<Vec<f64>>, rank| bases.into_iter().map(|basis| MotionSubspace { rank, basis }).collect();
     (motions(across, 2), motions(along, 1))
-}
-
-/// The pressures on a sensor that feels what c says of w, numbers by time.
-pub fn felt<'a>(w: &'a [f64], c: &'a [f64]) -> impl Iterator<Item = f32> + 'a {
-    let reach = move |w: &[f64]| w.iter().zip(c).map(|(w, c)| w * c).sum::<f64>();
-    w.chunks(c.len()).map(move |w| reach(w).max(0.0).powi(2) as f32)
 }

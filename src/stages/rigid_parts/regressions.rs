@@ -1,29 +1,29 @@
-//! Solve many small regressions at once, from their normal equations.
+//! Solve many small least-squares problems at once: their normal equations, by Cholesky factors, one problem a lane.
 
 use crate::numerics::simd::vectorised;
 
-/// Weight of nothing beside what is known, where that leaves a regression undetermined.
+/// Ridge, as a share of the mean square of the regressors: it decides where a regression is underdetermined.
 const RIDGE: f64 = 1e-6;
-/// Regressions that are solved at once.
+/// Regressions that are solved at once, one in each lane.
 pub const LANES: usize = 32;
-/// A number of each of these.
+/// One number of each regression.
 type Lanes = [f64; LANES];
 
-/// Normal equations of regressions on K numbers.
+/// Normal equations of regressions on K regressors.
 pub struct Regressions<const K: usize> {
     /// Sums of the products of two regressors, the second not after the first.
     pub squares: [[Lanes; K]; K],
-    /// Sums of the products of a regressor with what is explained; then the coefficients.
+    /// Sums of the products of a regressor with the response; the coefficients, once they are solved.
     pub products: [Lanes; K],
 }
 
 impl<const K: usize> Regressions<K> {
-    /// Sums of nothing.
+    /// Without any observation.
     pub fn new() -> Self {
         Self { squares: [[[0.0; LANES]; K]; K], products: [[0.0; LANES]; K] }
     }
 
-    /// Puts the coefficients in the place of the products: nearly 0 where the equations leave them open.
+    /// Replaces the products by the coefficients, which are nearly 0 where the equations are singular.
     pub fn solve(&mut self) {
         let Self { squares, products } = self;
         vectorised(
@@ -33,7 +33,7 @@ impl<const K: usize> Regressions<K> {
     }
 }
 
-/// Solves by the factors of Cholesky.
+/// Solves by Cholesky factors.
 #[inline(always)]
 #[expect(clippy::needless_range_loop, reason = "rows and columns of a triangle")]
 fn cholesky<const K: usize>(factor: &mut [[Lanes; K]; K], found: &mut [Lanes; K]) {
@@ -79,7 +79,7 @@ fn cholesky<const K: usize>(factor: &mut [[Lanes; K]; K], found: &mut [Lanes; K]
     }
 }
 
-/// Changes the number of each regression.
+/// Changes the number in each lane.
 #[inline(always)]
 fn each(numbers: &mut Lanes, change: impl Fn(usize, f64) -> f64) {
     for (lane, number) in numbers.iter_mut().enumerate() {
@@ -94,7 +94,7 @@ mod tests {
     use super::*;
     use crate::numerics::rng::stream;
 
-    /// Adds a row to each regression, and what it explains of it.
+    /// Adds an observation to the regression of a lane: regressors x, response y.
     fn add<const K: usize>(to: &mut Regressions<K>, lane: usize, x: [f64; K], y: f64) {
         for a in 0..K {
             to.products[a][lane] += x[a] * y;
@@ -102,7 +102,7 @@ mod tests {
         }
     }
 
-    fn found_again<const K: usize>() {
+    fn recovered<const K: usize>() {
         let mut rng = stream(1, 1, "regressions", K);
         let mut regressions = Regressions::<K>::new();
         let mut truth = [[0.0; K]; LANES];
@@ -121,14 +121,14 @@ mod tests {
     }
 
     #[test]
-    fn coefficients_are_found_again() {
-        found_again::<1>();
-        found_again::<3>();
-        found_again::<6>();
+    fn coefficients_are_recovered() {
+        recovered::<1>();
+        recovered::<3>();
+        recovered::<6>();
     }
 
     #[test]
-    fn what_is_not_determined_is_nearly_nothing() {
+    fn undetermined_coefficients_are_nearly_zero() {
         let mut regressions = Regressions::<2>::new();
         add(&mut regressions, 1, [1.0, 1.0], 2.0);
         regressions.solve();

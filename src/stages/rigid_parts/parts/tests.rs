@@ -1,8 +1,10 @@
-//! Test that parts are found from touch.
+//! Test that parts are recovered from touch.
 
 use rand::RngExt;
 
-use super::super::fixtures::felt;
+use super::super::cluster::Cluster;
+use super::super::fixtures::sensor_series;
+use super::super::search::MIN_SAVING;
 use super::*;
 use crate::numerics::partition::adjusted_rand_index;
 use crate::numerics::rng::stream;
@@ -30,14 +32,14 @@ fn distances(tactile: &Tactile) -> Distances {
 }
 
 #[test]
-fn parts_and_their_number_are_found_from_pieces() {
+fn parts_and_their_number_are_recovered_from_seed_clusters() {
     let (tactile, truth) = tactile();
     let all: Vec<usize> = (0..truth.len()).collect();
     let found = rigid_parts(&tactile, &all, &distances(&tactile));
     assert_eq!(found.labels, truth);
-    assert!(found.left.iter().all(|left| *left < 0.1));
-    for ((label, left), others) in found.labels.iter().zip(&found.left).zip(&found.others) {
-        assert!(others[0].1 > *left && others.is_sorted_by(|one, other| one.1 <= other.1));
+    assert!(found.residuals.iter().all(|residual| *residual < 0.1));
+    for ((label, residual), others) in found.labels.iter().zip(&found.residuals).zip(&found.alternatives) {
+        assert!(others[0].1 > *residual && others.is_sorted_by(|one, other| one.1 <= other.1));
         let mut parts: Vec<usize> = others.iter().map(|other| other.0).chain([*label]).collect();
         parts.sort_unstable();
         assert!(parts.into_iter().eq(0..=*truth.iter().max().unwrap()));
@@ -55,48 +57,50 @@ fn sensors_without_distances_go_to_the_part_that_explains_them() {
 }
 
 #[test]
-fn a_set_of_two_parts_costs_more_than_both() {
+fn a_cluster_of_two_parts_has_a_longer_description_than_both() {
     let (tactile, truth) = tactile();
     let series: Vec<&[f32]> = tactile.series().collect();
-    let body = Body { series, signed: false, distances: &Distances { sensors: 0, values: Vec::new() } };
+    let observations =
+        Observations { series, signed: false, distances: &Distances { sensors: 0, values: Vec::new() } };
     let every: Vec<usize> = (0..truth.len()).collect();
-    let roots = body.roots(&every, &body.telling_times(&every)[0]);
+    let roots = observations.roots(&every, &observations.informative_samples(&every)[0]);
     let own = |parts: &[usize]| {
         (0..truth.len()).filter(|sensor| parts.contains(&truth[*sensor])).collect::<Vec<_>>()
     };
-    let cost = |sensors: &[usize]| set(&roots, sensors.to_vec(), 1, ROUNDS[0]).cost;
-    assert!(cost(&own(&[1, 2])) > cost(&own(&[1])) + cost(&own(&[2])) + MARGIN);
-    // The halves of one part cost more than the whole.
+    let length =
+        |sensors: &[usize]| Cluster::new(&roots, sensors.to_vec(), 1, ITERATIONS[0]).description_length;
+    assert!(length(&own(&[1, 2])) > length(&own(&[1])) + length(&own(&[2])) + MIN_SAVING);
+    // The halves of one part have a longer description than the whole.
     let (first, second): (Vec<usize>, Vec<usize>) = own(&[2]).into_iter().partition(|sensor| sensor % 2 == 0);
-    assert!(cost(&own(&[2])) + MARGIN < cost(&first) + cost(&second));
+    assert!(length(&own(&[2])) + MIN_SAVING < length(&first) + length(&second));
 }
 
 #[test]
-fn a_large_face_joins_the_part_that_it_shares_numbers_with() {
-    // Sides of two cylinders that feel four numbers of their motion each, and both ends of the first, as many sensors, that feel two
-    // of these and one of their own.
-    const TIMES: usize = 600;
+fn a_large_face_joins_the_part_that_it_shares_components_with() {
+    // Sides of two cylinders that feel four components of their motion each; and both ends of the first, as many sensors, that
+    // feel two of these and one of their own.
+    const SAMPLES: usize = 600;
     let mut rng = stream(4, 1, "rigid", 0);
     let mut uniform =
         |count: usize| -> Vec<f64> { (0..count).map(|_| rng.random_range(-1.0..1.0)).collect() };
-    let motions = [uniform(5 * TIMES), uniform(5 * TIMES)];
+    let motions = [uniform(5 * SAMPLES), uniform(5 * SAMPLES)];
     let sensor = |sensor: usize| {
         let [a, b, c, d] = [0; 4].map(|_| uniform(1)[0]);
         let end = if sensor.is_multiple_of(2) { 1.0 } else { -1.0 };
         let c =
             if (40..80).contains(&sensor) { [0.0, 0.0, 0.4 * c, 0.4 * d, end] } else { [a, b, c, d, 0.0] };
-        felt(&motions[sensor / 80], &c).collect::<Vec<f32>>()
+        sensor_series(&motions[sensor / 80], &c).collect::<Vec<f32>>()
     };
     let series: Vec<Vec<f32>> = (0..120).map(sensor).collect();
     let series = series.iter().map(Vec::as_slice).collect();
     let distances = &Distances { sensors: 0, values: Vec::new() };
-    let body = Body { series, signed: false, distances };
-    let [every, times] = [120, TIMES].map(|count| (0..count).collect::<Vec<usize>>());
-    let search = Search { roots: body.roots(&every, &times), distances, rounds: ROUNDS[1] };
+    let observations = Observations { series, signed: false, distances };
+    let [every, samples] = [120, SAMPLES].map(|count| (0..count).collect::<Vec<usize>>());
+    let search = Search { roots: observations.roots(&every, &samples), distances, iterations: ITERATIONS[1] };
     let thirds = [0, 40, 80].map(|first| (first..first + 40).collect::<Vec<usize>>());
-    let (parts, loose) = search.separated(search.sets(thirds.to_vec(), Vec::new()));
+    let (parts, unassigned) = search.parts_and_unassigned(search.clusters(thirds.to_vec(), Vec::new()));
     let mut found: Vec<Vec<usize>> = parts.into_iter().map(|part| part.sensors).collect();
     found.sort();
     assert_eq!(found, [(0..80).collect::<Vec<usize>>(), (80..120).collect()]);
-    assert!(loose.is_empty());
+    assert!(unassigned.is_empty());
 }

@@ -1,0 +1,115 @@
+//! Correlate the squared speeds of a joint as two parts feel it: canonical correlation (Hotelling 1936) of quadratic forms that
+//! are nowhere negative.
+
+use nalgebra::{DMatrix, DVector};
+
+/// What is added to the variances of monomials, as a share of their mean: forms of hardly any variance are noise.
+const RIDGE: f64 = 1e-5;
+/// Iterations in which forms are made nowhere negative, and regressed on each other.
+const ITERATIONS: usize = 6;
+
+/// The quadratic forms of one part's motion.
+pub struct QuadraticForms {
+    /// Which two components of the motion each monomial is the product of, the second not before the first.
+    pairs: Vec<(usize, usize)>,
+    /// The size of each component of the motion.
+    scales: Vec<f64>,
+    /// Sums over samples of the products of two monomials, with a ridge.
+    moments: DMatrix<f64>,
+    /// The lower Cholesky factor of the moments.
+    factor: DMatrix<f64>,
+}
+
+impl QuadraticForms {
+    /// From the moments of these monomials; `None` if the part feels nothing.
+    pub fn new(pairs: Vec<(usize, usize)>, mut moments: DMatrix<f64>) -> Option<Self> {
+        let n = moments.nrows();
+        if n == 0 {
+            return None;
+        }
+        let rank = pairs.iter().map(|pair| pair.1 + 1).max().unwrap_or(0);
+        let mut scales = vec![0.0; rank];
+        for (at, (i, _)) in pairs.iter().enumerate().filter(|(_, (i, j))| i == j) {
+            scales[*i] = moments[(at, at)].max(0.0).sqrt().sqrt();
+        }
+        let ridge = RIDGE * moments.trace() / n as f64;
+        (0..n).for_each(|at| moments[(at, at)] += ridge);
+        let factor = moments.clone().cholesky()?.unpack();
+        Some(Self { pairs, scales, moments, factor })
+    }
+
+    /// The nearest positive semidefinite form: nearest by its coefficients, with each component of the motion in the unit of its
+    /// size.
+    fn semidefinite(&self, form: &DVector<f64>) -> DVector<f64> {
+        let n = self.scales.len();
+        let mut matrix = DMatrix::zeros(n, n);
+        for (&(i, j), coefficient) in self.pairs.iter().zip(form.iter()) {
+            let share = if i == j { *coefficient } else { 0.5 * coefficient };
+            matrix[(i, j)] = share * self.scales[i] * self.scales[j];
+            matrix[(j, i)] = matrix[(i, j)];
+        }
+        let mut eigen = matrix.symmetric_eigen();
+        eigen.eigenvalues.apply(|value| *value = value.max(0.0));
+        let matrix = eigen.recompose();
+        let coefficient = |(i, j): (usize, usize)| {
+            let scale = self.scales[i] * self.scales[j];
+            let twice = if i == j { 1.0 } else { 2.0 };
+            if scale > 0.0 { twice * matrix[(i, j)] / scale } else { 0.0 }
+        };
+        DVector::from_iterator(form.len(), self.pairs.iter().copied().map(coefficient))
+    }
+
+    /// The root of the sum of squares of a form over samples.
+    fn norm(&self, form: &DVector<f64>) -> f64 {
+        (form.transpose() * &self.moments * form)[(0, 0)].max(0.0).sqrt()
+    }
+
+    /// The regression on the monomials of what has these products with them.
+    fn regressed(&self, products: &DVector<f64>) -> DVector<f64> {
+        let half = self.factor.solve_lower_triangular(products).expect("a factor is regular");
+        self.factor.tr_solve_lower_triangular(&half).expect("a factor is regular")
+    }
+
+    /// Whether the trace of a form is negative.
+    fn is_negative(&self, form: &DVector<f64>) -> bool {
+        let own = self.pairs.iter().zip(form.iter()).filter(|((i, j), _)| i == j);
+        own.map(|((i, _), coefficient)| coefficient * self.scales[*i].powi(2)).sum::<f64>() < 0.0
+    }
+}
+
+/// The largest cosine over samples between a quadratic form of one part's motion and one of another's, both positive
+/// semidefinite, as the square of a speed is; 0 to 1, and 0 where a part feels nothing.
+///
+/// `products` are sums over samples of the products of the monomials of both. The start is the first canonical correlation,
+/// without a constant, for a form is 0 at rest. Then each form is made semidefinite and regressed on the other, and the best
+/// iteration counts: a lower bound of the largest cosine.
+pub fn correlation(
+    first: &Option<QuadraticForms>,
+    second: &Option<QuadraticForms>,
+    products: &DMatrix<f64>,
+) -> f64 {
+    let (Some(first), Some(second)) = (first, second) else { return 0.0 };
+    let half = first.factor.solve_lower_triangular(products).expect("a factor is regular");
+    let whole = second.factor.solve_lower_triangular(&half.transpose()).expect("a factor is regular");
+    let svd = whole.svd(true, true);
+    let (Some(u), Some(v)) = (&svd.u, &svd.v_t) else { return 0.0 };
+    let at = svd.singular_values.imax();
+    let mut b =
+        second.factor.tr_solve_lower_triangular(&u.column(at).into_owned()).expect("a factor is regular");
+    let mut a = first.factor.tr_solve_lower_triangular(&v.row(at).transpose()).expect("a factor is regular");
+    if first.is_negative(&a) {
+        (a, b) = (-a, -b);
+    }
+    let mut best = 0.0;
+    for _ in 0..ITERATIONS {
+        let (own, other) = (first.semidefinite(&a), second.semidefinite(&b));
+        let norms = first.norm(&own) * second.norm(&other);
+        if norms <= 0.0 {
+            break;
+        }
+        let with_other = products * &other;
+        best = f64::max(best, own.dot(&with_other) / norms);
+        (a, b) = (first.regressed(&with_other), second.regressed(&products.tr_mul(&own)));
+    }
+    best.clamp(0.0, 1.0)
+}

@@ -1,0 +1,115 @@
+//! Sum the products of quadratic monomials of parts and of unassigned clusters, for parts that have any of these clusters.
+
+use std::ops::Range;
+
+use nalgebra::DMatrix;
+
+use super::correlation::{QuadraticForms, correlation};
+use super::moments::{monomials, scales};
+use crate::stages::rigid_parts::{MotionSubspace, stratified};
+
+/// Samples that are used, spread over all.
+const MAX_SAMPLES: usize = 4000;
+
+/// A part with some unassigned clusters.
+pub struct Extended {
+    /// The clusters.
+    pub clusters: Vec<usize>,
+    /// Where its monomials are.
+    places: Vec<usize>,
+    forms: Option<QuadraticForms>,
+}
+
+/// Sums over samples of the products of monomials: of each part's motion, of each cluster's, and of one of each.
+pub struct CrossMoments {
+    sums: DMatrix<f64>,
+    /// Where the monomials of a part, of two clusters, and of a part and a cluster are.
+    of_part: Vec<Range<usize>>,
+    of_clusters: Vec<Vec<Range<usize>>>,
+    of_both: Vec<Vec<Range<usize>>>,
+    /// Ranks of the motions of parts, and of clusters.
+    parts: Vec<usize>,
+    clusters: Vec<usize>,
+}
+
+impl CrossMoments {
+    /// Of the motions of parts and of unassigned clusters at the same T samples.
+    pub fn new(parts: &[MotionSubspace], unassigned: &[MotionSubspace], samples: usize) -> Self {
+        let chosen: Vec<usize> = stratified(samples, MAX_SAMPLES).collect();
+        let scales = scales(parts, samples);
+        let mut columns: Vec<Vec<f64>> = Vec::new();
+        let mut add = |a: &MotionSubspace, b: &MotionSubspace, same: bool| {
+            let first = columns.len();
+            for i in 0..a.rank {
+                for j in if same { i } else { 0 }..b.rank {
+                    columns.push(chosen.iter().map(|&t| scales[t] * a.at(t)[i] * b.at(t)[j]).collect());
+                }
+            }
+            first..columns.len()
+        };
+        let of_part = parts.iter().map(|part| add(part, part, true)).collect();
+        let of_clusters = (0..unassigned.len())
+            .map(|a| (0..=a).map(|b| add(&unassigned[a], &unassigned[b], a == b)).collect())
+            .collect();
+        let of_both = parts
+            .iter()
+            .map(|part| unassigned.iter().map(|cluster| add(part, cluster, false)).collect())
+            .collect();
+        let all = DMatrix::from_fn(chosen.len(), columns.len(), |row, column| columns[column][row]);
+        let ranks = |motions: &[MotionSubspace]| motions.iter().map(|motion| motion.rank).collect();
+        let (parts, clusters) = (ranks(parts), ranks(unassigned));
+        Self { sums: all.transpose() * &all, of_part, of_clusters, of_both, parts, clusters }
+    }
+
+    /// Number of parts.
+    pub fn parts(&self) -> usize {
+        self.parts.len()
+    }
+
+    /// A part with these clusters.
+    pub fn extended(&self, part: usize, clusters: Vec<usize>) -> Extended {
+        let (places, pairs) = self.places(part, &clusters);
+        let forms = QuadraticForms::new(pairs, self.select(&places, &places));
+        Extended { clusters, places, forms }
+    }
+
+    /// The correlation of two parts.
+    pub fn correlation(&self, first: &Extended, second: &Extended) -> f64 {
+        correlation(&first.forms, &second.forms, &self.select(&first.places, &second.places))
+    }
+
+    /// The places of the monomials of a part with these clusters, and which two components of their motion each is the product
+    /// of.
+    fn places(&self, part: usize, clusters: &[usize]) -> (Vec<usize>, Vec<(usize, usize)>) {
+        let k = self.parts[part];
+        let mut places: Vec<usize> = self.of_part[part].clone().collect();
+        let mut pairs = monomials(k);
+        let mut firsts: Vec<usize> = Vec::new();
+        let mut next = k;
+        for (at, &cluster) in clusters.iter().enumerate() {
+            firsts.push(next);
+            let own = next..next + self.clusters[cluster];
+            next = own.end;
+            places.extend(self.of_both[part][cluster].clone());
+            pairs.extend((0..k).flat_map(|i| own.clone().map(move |j| (i, j))));
+            for (&other, &first) in clusters[..=at].iter().zip(&firsts) {
+                places.extend(self.of_clusters[cluster.max(other)][cluster.min(other)].clone());
+                let theirs = first..first + self.clusters[other];
+                // The cluster of the greater number gives the rows.
+                let (rows, columns) = if cluster > other { (&own, &theirs) } else { (&theirs, &own) };
+                if cluster == other {
+                    pairs.extend(own.clone().flat_map(|i| (i..own.end).map(move |j| (i, j))));
+                } else {
+                    pairs.extend(
+                        rows.clone().flat_map(|i| columns.clone().map(move |j| (i.min(j), i.max(j)))),
+                    );
+                }
+            }
+        }
+        (places, pairs)
+    }
+
+    fn select(&self, rows: &[usize], columns: &[usize]) -> DMatrix<f64> {
+        DMatrix::from_fn(rows.len(), columns.len(), |row, column| self.sums[(rows[row], columns[column])])
+    }
+}

@@ -1,0 +1,182 @@
+//! Sum the products of quadratic monomials of all motions over blocks of samples: all that correlations and their bootstrap need.
+
+use nalgebra::DMatrix;
+use rayon::prelude::*;
+
+use super::correlation::{QuadraticForms, correlation};
+use crate::stages::rigid_parts::MotionSubspace;
+
+/// Weight of a sample at which the whole body hardly moves, in units of its mean square.
+const REST: f64 = 1e-3;
+
+/// Sums over samples of the products of all quadratic monomials of all motions, by blocks of samples.
+#[derive(Debug, Clone)]
+pub struct Moments {
+    /// Where the monomials of each part begin, and where the last end.
+    starts: Vec<usize>,
+    /// For each block, monomials × monomials.
+    blocks: Vec<DMatrix<f64>>,
+}
+
+impl Moments {
+    /// Of the motions of all parts at the same T samples, in blocks of nearly equal length.
+    ///
+    /// A monomial is w_i w_j divided by the root of the whole body's Σ |w|² at the sample, so that fast movements count in
+    /// proportion to speed, not to its square.
+    pub fn new(motions: &[MotionSubspace], samples: usize, blocks: usize) -> Self {
+        let mut starts = vec![0];
+        for MotionSubspace { rank: k, .. } in motions {
+            starts.push(starts[starts.len() - 1] + k * (k + 1) / 2);
+        }
+        let all = starts[motions.len()];
+        let scales = scales(motions, samples);
+        let block = |at: usize| {
+            let samples = at * samples / blocks..(at + 1) * samples / blocks;
+            let mut monomials = DMatrix::zeros(samples.len(), all);
+            for (row, t) in samples.enumerate() {
+                let mut column = 0;
+                for motion in motions {
+                    let w = motion.at(t);
+                    for i in 0..w.len() {
+                        for j in i..w.len() {
+                            monomials[(row, column)] = scales[t] * w[i] * w[j];
+                            column += 1;
+                        }
+                    }
+                }
+            }
+            monomials.transpose() * &monomials
+        };
+        let moves = scales.iter().any(|scale| *scale > 0.0);
+        let blocks = if moves { (0..blocks).into_par_iter().map(block).collect() } else { Vec::new() };
+        Self { starts, blocks }
+    }
+
+    /// Number of blocks; none if nothing moves.
+    pub fn blocks(&self) -> usize {
+        self.blocks.len()
+    }
+
+    /// The [`correlation`] of each pair of parts over all samples: parts × parts, 0 to 1, symmetric, 1 on the diagonal.
+    pub fn correlations(&self) -> DMatrix<f64> {
+        self.resampled_correlations(&vec![1; self.blocks()])
+    }
+
+    /// The same over a bootstrap resample that has each block so many times.
+    pub fn resampled_correlations(&self, counts: &[usize]) -> DMatrix<f64> {
+        let moments = self.sum(counts);
+        let parts = self.starts.len() - 1;
+        let length = |part: usize| self.starts[part + 1] - self.starts[part];
+        let block = |a: usize, b: usize| {
+            moments.view((self.starts[a], self.starts[b]), (length(a), length(b))).into_owned()
+        };
+        let rank = |part: usize| (0..).find(|k| k * (k + 1) / 2 == length(part)).expect("whole");
+        let forms: Vec<_> =
+            (0..parts).map(|part| QuadraticForms::new(monomials(rank(part)), block(part, part))).collect();
+        let mut correlations = DMatrix::identity(parts, parts);
+        for (a, b) in (0..parts).flat_map(|a| (a + 1..parts).map(move |b| (a, b))) {
+            correlations[(a, b)] = correlation(&forms[a], &forms[b], &block(a, b));
+            correlations[(b, a)] = correlations[(a, b)];
+        }
+        correlations
+    }
+
+    /// The sum over blocks, each counted so many times.
+    fn sum(&self, counts: &[usize]) -> DMatrix<f64> {
+        let all = self.starts[self.starts.len() - 1];
+        let mut sum = DMatrix::zeros(all, all);
+        for (block, &count) in self.blocks.iter().zip(counts).filter(|(_, count)| **count > 0) {
+            sum.zip_apply(block, |sum, moment| *sum += moment * count as f64);
+        }
+        sum
+    }
+}
+
+/// The monomials of k components, as pairs of which the second is not before the first.
+pub fn monomials(k: usize) -> Vec<(usize, usize)> {
+    (0..k).flat_map(|i| (i..k).map(move |j| (i, j))).collect()
+}
+
+/// The factor of the monomials at each sample: one over the root of the whole body's Σ |w|² there and of its mean; 0 if nothing
+/// moves.
+pub fn scales(motions: &[MotionSubspace], samples: usize) -> Vec<f64> {
+    let energy = |t: usize| -> f64 { motions.iter().flat_map(|motion| motion.at(t)).map(|w| w * w).sum() };
+    let energies: Vec<f64> = (0..samples).into_par_iter().map(energy).collect();
+    let mean = energies.iter().sum::<f64>() / samples.max(1) as f64;
+    let scale = |energy: f64| if mean > 0.0 { 1.0 / (mean * (energy + REST * mean)).sqrt() } else { 0.0 };
+    energies.into_iter().map(scale).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::RngExt;
+
+    use super::*;
+    use crate::numerics::rng::stream;
+
+    /// Two planar parts whose frames rotate against each other at random, and which share the velocity of a joint; and a third
+    /// that shares nothing. Each feels two components of its velocity, and its angular velocity.
+    fn motions(samples: usize) -> Vec<MotionSubspace> {
+        let mut rng = stream(1, 1, "moments", 0);
+        let mut bases = vec![Vec::new(); 3];
+        for _ in 0..samples {
+            let mut uniform = || rng.random_range(-1.0..1.0);
+            let (joint, angle, rates) = ([uniform(), uniform()], 3.0 * uniform(), [uniform(), uniform()]);
+            let (sine, cosine) = f64::sin_cos(angle);
+            let turned = [cosine * joint[0] - sine * joint[1], sine * joint[0] + cosine * joint[1]];
+            // v = the joint's velocity − ω × l, with l along x.
+            bases[0].extend([joint[0], joint[1] - 0.7 * rates[0], rates[0]]);
+            bases[1].extend([turned[0], turned[1] + 0.4 * rates[1], rates[1]]);
+            bases[2].extend([uniform(), uniform(), uniform()]);
+        }
+        bases.into_iter().map(|basis| MotionSubspace { rank: 3, basis }).collect()
+    }
+
+    #[test]
+    fn parts_that_share_a_joint_feel_its_speed() {
+        let motions = motions(5000);
+        let moments = Moments::new(&motions, 5000, 7);
+        let found = moments.correlations();
+        // The ridge takes some thousandths.
+        assert!(found[(0, 1)] > 0.995, "{found}");
+        assert!(found[(0, 2)] < 0.95 && found[(1, 2)] < 0.95, "{found}");
+        assert!(found == found.transpose());
+        // No linear form of the one is one of the other: the joint bends.
+        let column = |part: usize, at: usize| motions[part].basis.iter().skip(at).step_by(3).copied();
+        let product = |a: usize, b: usize| column(0, a).zip(column(1, b)).map(|(x, y)| x * y).sum::<f64>();
+        assert!((0..3).all(|a| (0..3).all(|b| product(a, b).abs() < 0.15 * 5000.0 / 3.0)));
+    }
+
+    #[test]
+    fn a_speed_is_not_the_difference_of_two_squares() {
+        // The first part lacks a component of its motion, and the second one has it instead: only a difference of two squares
+        // agrees.
+        let motions = motions(5000);
+        let components = |part: usize, at: &[usize]| -> Vec<Vec<f64>> {
+            at.iter().map(|at| motions[part].basis.iter().skip(*at).step_by(3).copied().collect()).collect()
+        };
+        let together = |columns: Vec<Vec<f64>>| MotionSubspace {
+            rank: columns.len(),
+            basis: (0..5000)
+                .flat_map(|t| columns.iter().map(move |column| column[t]).collect::<Vec<_>>())
+                .collect(),
+        };
+        let lacks = together(components(0, &[1, 2]));
+        let has = together([components(1, &[0, 1, 2]), components(0, &[0])].concat());
+        let correlation =
+            |a: MotionSubspace, b: MotionSubspace| Moments::new(&[a, b], 5000, 1).correlations()[(0, 1)];
+        let right = correlation(motions[0].clone(), motions[1].clone());
+        let wrong = correlation(lacks, has);
+        assert!(wrong < right - 0.02, "{wrong} {right}");
+    }
+
+    #[test]
+    fn a_part_that_feels_nothing_correlates_with_none() {
+        let mut motions = motions(100);
+        motions.push(MotionSubspace { rank: 0, basis: Vec::new() });
+        motions[1].basis.fill(0.0);
+        let found = Moments::new(&motions, 100, 2).correlations();
+        assert_eq!((found[(0, 3)], found[(0, 1)]), (0.0, 0.0));
+        assert!(found.iter().all(|cosine| (0.0..=1.0).contains(cosine)));
+    }
+}

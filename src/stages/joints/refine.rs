@@ -1,0 +1,301 @@
+//! Refine estimated parts by their joints, and find the tree over them: unassigned clusters get a part, and spurious parts go.
+
+use std::cmp::Reverse;
+use std::collections::BTreeMap;
+
+use rand::Rng;
+use rayon::prelude::*;
+
+use super::assign::{assign, gain};
+use super::tree::Joints;
+use crate::numerics::partition::{named_by_appearance, sizes};
+use crate::stages::rigid_parts::{
+    MotionSubspace, RigidParts, Roots, is_signed, opposite_pairs, outlier_limit, similar, stratified,
+    typical_size,
+};
+use crate::stages::sense::Tactile;
+
+/// Samples that similarity is computed from, spread over all.
+const MAX_SAMPLES: usize = 2000;
+/// Largest residual of a sensor that the tree is learned from, or three times the median of its part: beyond, it may be on
+/// another part.
+const TRUSTED: f64 = 0.02;
+/// Information, in nats, that the tree must gain by merging a small part with another, so that the part is spurious.
+const SPURIOUS: f64 = 1.0;
+/// Rank from which on a part is no piece of another: a cylinder feels its motion but its spin.
+const WHOLE_RANK: usize = 5;
+/// Unassigned clusters that are tried on parts, the largest: memory grows with the square of their number.
+const MAX_CLUSTERS: usize = 40;
+
+/// Sensors by their label.
+type Members = BTreeMap<usize, Vec<usize>>;
+
+/// The parts with each unassigned cluster assigned, and how they are joined.
+///
+/// A cluster is assigned to the part that the joints tell; if none does, each of its sensors to the part with the smallest
+/// residual. In: M × T pressures, of any sign, and the parts and unassigned clusters of their sensors. Out: parts without
+/// unassigned clusters, named by appearance, and their tree.
+pub fn refine(tactile: &Tactile, mut parts: RigidParts, rng: &mut impl Rng) -> (RigidParts, Joints) {
+    let mut refinement = Refinement::new(tactile);
+    let (mut refined, names, motions) = loop {
+        let mut refined = parts.clone();
+        let (names, motions) = refinement.assigned(&mut refined);
+        let Some(spurious) = refinement.spurious(&parts, &names, &motions) else {
+            break (refined, names, motions);
+        };
+        refinement.dissolve(&mut parts, spurious);
+    };
+    // Unassigned clusters leave gaps in the labels.
+    let labels = named_by_appearance(&refined.labels);
+    let new: BTreeMap<usize, usize> = refined.labels.iter().copied().zip(labels.iter().copied()).collect();
+    let named = |(name, own): (usize, MotionSubspace)| Some((*new.get(&name)?, own));
+    let nodes: BTreeMap<usize, MotionSubspace> = names.into_iter().zip(motions).filter_map(named).collect();
+    for others in &mut refined.alternatives {
+        *others = others.iter().filter_map(|(part, residual)| Some((*new.get(part)?, *residual))).collect();
+    }
+    (refined.labels, refined.unassigned) = (labels, Vec::new());
+    let (names, motions): (Vec<usize>, Vec<MotionSubspace>) = nodes.into_iter().unzip();
+    let joints = Joints::of_motions(&names, &motions, tactile.samples, rng);
+    (refined, joints)
+}
+
+/// The largest clusters, and the sensors of the others.
+fn largest(clusters: Members) -> (Members, Vec<Vec<usize>>) {
+    let mut order: Vec<(usize, Vec<usize>)> = clusters.into_iter().collect();
+    order.sort_by_key(|(_, sensors)| Reverse(sensors.len()));
+    let rest = order.split_off(order.len().min(MAX_CLUSTERS));
+    (order.into_iter().collect(), rest.into_iter().map(|(_, sensors)| sensors).collect())
+}
+
+/// Assigns each sensor to the part with the smallest residual, or to this part if there is no other.
+fn assign_by_residual(parts: &mut RigidParts, sensors: &[usize], part: usize) {
+    for &sensor in sensors {
+        let residual = parts.residuals[sensor];
+        let others = &mut parts.alternatives[sensor];
+        let best = if others.is_empty() { (part, residual) } else { others.remove(0) };
+        (parts.labels[sensor], parts.residuals[sensor]) = best;
+    }
+}
+
+/// Assigns sensors to a part.
+fn assign_to(parts: &mut RigidParts, sensors: &[usize], part: usize) {
+    for &sensor in sensors {
+        parts.labels[sensor] = part;
+        parts.alternatives[sensor].retain(|(other, _)| *other != part);
+    }
+}
+
+/// What all sensors feel, and the motions that were learned from it.
+struct Refinement<'a> {
+    series: Vec<&'a [f32]>,
+    signed: bool,
+    roots: Roots,
+    /// Motions by their sensors: most stay the same from one iteration to the next.
+    known: BTreeMap<Vec<usize>, MotionSubspace>,
+}
+
+impl<'a> Refinement<'a> {
+    fn new(tactile: &'a Tactile) -> Self {
+        let series: Vec<&[f32]> = tactile.series().collect();
+        let samples: Vec<usize> = stratified(tactile.samples, MAX_SAMPLES).collect();
+        let signed = is_signed(tactile);
+        Self { roots: Roots::at(&series, &samples, signed), signed, series, known: BTreeMap::new() }
+    }
+
+    /// T.
+    fn samples(&self) -> usize {
+        self.series.first().map_or(0, |series| series.len())
+    }
+
+    fn motions(&mut self, clusters: &[&Vec<usize>]) -> Vec<MotionSubspace> {
+        let found = |sensors: &Vec<usize>| {
+            let series: Vec<&[f32]> = sensors.iter().map(|&sensor| self.series[sensor]).collect();
+            (sensors.clone(), MotionSubspace::of_cluster(&series, None, self.signed))
+        };
+        let new = clusters.par_iter().filter(|sensors| !self.known.contains_key(**sensors));
+        let new: Vec<(Vec<usize>, MotionSubspace)> = new.map(|sensors| found(sensors)).collect();
+        self.known.extend(new);
+        clusters.iter().map(|sensors| self.known[*sensors].clone()).collect()
+    }
+
+    /// Assigns the unassigned clusters. Out: the labels of the parts, and their motions with those of their clusters.
+    fn assigned(&mut self, parts: &mut RigidParts) -> (Vec<usize>, Vec<MotionSubspace>) {
+        let (known, clusters) = parts_and_unassigned(parts);
+        let (clusters, rest) = largest(clusters);
+        let mut motions = self.motions(&known.values().collect::<Vec<_>>());
+        let mut names: Vec<usize> = known.into_keys().collect();
+        let of_clusters = self.motions(&clusters.values().collect::<Vec<_>>());
+        let members: Vec<&[usize]> = clusters.values().map(Vec::as_slice).collect();
+        let pairs = opposite_pairs(&self.roots, &members);
+        let found = assign(&motions, &of_clusters, &pairs, self.samples());
+        if names.is_empty() {
+            names.extend(clusters.keys());
+            motions.extend(of_clusters);
+        } else {
+            for (sensors, (part, own)) in clusters.values().zip(found.into_iter().zip(of_clusters)) {
+                let Some(part) = part else {
+                    assign_by_residual(parts, sensors, names[0]);
+                    continue;
+                };
+                motions[part] = motions[part].with(&own);
+                assign_to(parts, sensors, names[part]);
+            }
+        }
+        rest.iter().for_each(|sensors| assign_by_residual(parts, sensors, names[0]));
+        (names, motions)
+    }
+
+    /// Of the small parts of low rank, the one by whose merging the tree gains most information, if that is much.
+    fn spurious(&self, parts: &RigidParts, names: &[usize], motions: &[MotionSubspace]) -> Option<usize> {
+        let sizes = sizes(&parts.labels);
+        let own: Vec<usize> = names.iter().map(|name| sizes[name]).collect();
+        let small = typical_size(own.clone()).div_ceil(2);
+        let can_be = |at: &usize| {
+            own[*at] < small && motions[*at].rank < WHOLE_RANK && !parts.unassigned.contains(&names[*at])
+        };
+        let places = if names.len() > 2 { 0..names.len() } else { 0..0 };
+        let gains = places.filter(can_be).map(|at| (gain(motions, at, self.samples()), at));
+        let most = gains.reduce(|most, other| if other.0 > most.0 { other } else { most });
+        most.filter(|(gain, _)| *gain > SPURIOUS).map(|(_, at)| names[at])
+    }
+
+    /// Makes a part unassigned clusters of sensors that feel the same.
+    fn dissolve(&self, parts: &mut RigidParts, part: usize) {
+        let own: Vec<usize> = (0..parts.labels.len()).filter(|at| parts.labels[*at] == part).collect();
+        for cluster in similar(&self.roots, &own) {
+            let name = parts.labels.iter().chain(&parts.unassigned).max().map_or(0, |last| last + 1);
+            assign_to(parts, &cluster, name);
+            parts.unassigned.push(name);
+        }
+        for others in &mut parts.alternatives {
+            others.retain(|(other, _)| *other != part);
+        }
+    }
+}
+
+/// The trusted sensors of parts, and the sensors of unassigned clusters.
+fn parts_and_unassigned(parts: &RigidParts) -> (Members, Members) {
+    let (mut known, mut unassigned) = (Members::new(), Members::new());
+    for (sensor, (label, is_trusted)) in parts.labels.iter().zip(trusted(parts)).enumerate() {
+        if parts.unassigned.contains(label) {
+            unassigned.entry(*label).or_default().push(sensor);
+        } else if is_trusted {
+            known.entry(*label).or_default().push(sensor);
+        }
+    }
+    (known, unassigned)
+}
+
+/// Whether the motion of its part explains each sensor. Others may be on another part, and would add the motion of that one.
+fn trusted(parts: &RigidParts) -> Vec<bool> {
+    let most = |part: usize| {
+        let own = parts.labels.iter().zip(&parts.residuals).filter(|(label, _)| **label == part);
+        outlier_limit(own.map(|(_, residual)| *residual).collect(), TRUSTED)
+    };
+    let count = parts.labels.iter().max().map_or(0, |last| last + 1);
+    let most: Vec<f64> = (0..count).map(most).collect();
+    parts.labels.iter().zip(&parts.residuals).map(|(part, residual)| *residual <= most[*part]).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::RngExt;
+
+    use super::super::fixtures::row;
+    use super::*;
+    use crate::numerics::rng::stream;
+    use crate::stages::rigid_parts::fixtures::sensor_series;
+
+    /// Two parts of sensors that feel four components of their own, and more single sensors than are tried on parts.
+    fn many_singles() -> (Tactile, RigidParts) {
+        let (samples, singles) = (400, MAX_CLUSTERS + 5);
+        let mut rng = stream(1, 1, "refine", 0);
+        let mut uniform =
+            |count: usize| -> Vec<f64> { (0..count).map(|_| rng.random_range(-1.0..1.0)).collect() };
+        let mut pressures = Vec::new();
+        for _ in 0..2 {
+            let w = uniform(4 * samples);
+            uniform(4 * 30).chunks(4).for_each(|c| pressures.extend(sensor_series(&w, c)));
+        }
+        pressures.extend(uniform(singles * samples).into_iter().map(|value| value.max(0.0) as f32));
+        let labels: Vec<usize> = (0..60).map(|at| at / 30).chain(2..2 + singles).collect();
+        let others = |at: usize| if at.is_multiple_of(2) { vec![(1, 0.5)] } else { Vec::new() };
+        let parts = RigidParts {
+            residuals: vec![0.0; labels.len()],
+            alternatives: (0..labels.len()).map(others).collect(),
+            unassigned: (2..2 + singles).collect(),
+            labels,
+        };
+        (Tactile { samples, pressures }, parts)
+    }
+
+    #[test]
+    fn every_sensor_is_on_a_part_of_the_tree() {
+        let (tactile, parts) = many_singles();
+        let (refined, joints) = refine(&tactile, parts.clone(), &mut stream(1, 1, "co-motion", 0));
+        assert_eq!(joints.ranks.keys().copied().collect::<Vec<_>>(), [0, 1]);
+        assert!(refined.labels.iter().all(|label| *label < 2) && refined.unassigned.is_empty());
+        assert_eq!(refined.labels[..60], parts.labels[..60]);
+        assert!(
+            refined.alternatives.iter().flatten().all(|(part, residual)| *part < 2 && residual.is_finite())
+        );
+    }
+
+    /// Three planar parts in a row of 20 sensors on their sides, and a fourth of six, with loadings `c` of the motion of the last
+    /// part and of the ends of the middle one.
+    fn small_part(c: impl Fn(usize) -> [f64; 3]) -> (Tactile, RigidParts) {
+        let samples = 4000;
+        let (sides, ends) = row(4, samples);
+        let mut rng = stream(2, 1, "refine", 0);
+        let mut pressures = Vec::new();
+        for side in &sides[..3] {
+            for _ in 0..20 {
+                let c = [rng.random_range(-1.0..1.0), rng.random_range(-1.0..1.0)];
+                pressures.extend(sensor_series(&side.basis, &c));
+            }
+        }
+        let last = sides[3].with(&ends[1]);
+        (0..6).for_each(|sensor| pressures.extend(sensor_series(&last.basis, &c(sensor))));
+        let labels: Vec<usize> = (0..66).map(|sensor| sensor / 20).collect();
+        let (residuals, alternatives) = (vec![0.0; labels.len()], vec![vec![(0, 0.5)]; labels.len()]);
+        (
+            Tactile { samples, pressures },
+            RigidParts { labels, residuals, alternatives, unassigned: Vec::new() },
+        )
+    }
+
+    #[test]
+    fn a_small_cluster_is_a_part_unless_the_joints_need_it_elsewhere() {
+        let refined = |(tactile, parts): (Tactile, RigidParts)| {
+            refine(&tactile, parts, &mut stream(1, 1, "co-motion", 0)).0.labels
+        };
+        let sign = |sensor: usize| if sensor.is_multiple_of(2) { 1.0 } else { -1.0 };
+        let foot = refined(small_part(|sensor| [sign(sensor), sensor as f64 / 6.0 - 0.4, 0.0]));
+        assert_eq!(foot[60..], [3; 6]);
+        let ends = refined(small_part(|sensor| [0.0, 0.0, sign(sensor)]));
+        assert_eq!(ends[60..], [1; 6]);
+    }
+
+    #[test]
+    fn a_sensor_whose_next_part_is_spurious_is_assigned_to_the_one_after() {
+        let sign = |sensor: usize| if sensor.is_multiple_of(2) { 1.0 } else { -1.0 };
+        let (mut tactile, mut parts) = small_part(|sensor| [0.0, 0.0, sign(sensor)]);
+        // An unassigned sensor that feels something at a single sample: no joint needs it.
+        tactile.pressures.extend((0..tactile.samples).map(|t| f32::from(t == 7)));
+        parts.labels.push(4);
+        parts.residuals.push(0.0);
+        parts.alternatives.push(vec![(3, 0.1), (2, 0.12), (0, 0.9)]);
+        parts.unassigned.push(4);
+        let (refined, _) = refine(&tactile, parts, &mut stream(1, 1, "co-motion", 0));
+        assert_eq!((refined.labels[60..].to_vec(), refined.residuals[66]), (vec![1, 1, 1, 1, 1, 1, 2], 0.12));
+    }
+
+    #[test]
+    fn unassigned_clusters_alone_are_parts() {
+        let (tactile, mut parts) = many_singles();
+        parts.unassigned = (0..=*parts.labels.iter().max().unwrap()).collect();
+        let (refined, joints) = refine(&tactile, parts, &mut stream(1, 1, "co-motion", 0));
+        assert_eq!(joints.tree.len() + 1, joints.ranks.len());
+        assert!(refined.labels.iter().all(|label| joints.ranks.contains_key(label)));
+    }
+}

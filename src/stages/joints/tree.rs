@@ -1,0 +1,250 @@
+//! Estimate the tree over parts, the maximum spanning tree of the correlations of joint speeds, and the bootstrap support of its
+//! edges (Felsenstein 1985).
+
+use std::collections::BTreeMap;
+
+use nalgebra::DMatrix;
+use rand::{Rng, RngExt};
+use rayon::prelude::*;
+
+use super::moments::Moments;
+use crate::numerics::partition::sizes;
+use crate::stages::rigid_parts::{MotionSubspace, is_signed};
+use crate::stages::sense::Tactile;
+use crate::stages::tree::{Edge, prim};
+
+/// Most blocks of samples that are drawn with replacement, and the fewest samples of a block: longer than a movement lasts.
+const BLOCKS: usize = 50;
+const BLOCK_SAMPLES: usize = 100;
+/// Resampled trees.
+const RESAMPLES: usize = 400;
+
+/// A pair of parts.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Pair {
+    /// Label of one part.
+    pub part: usize,
+    /// Label of the other, which is larger.
+    pub other: usize,
+    /// Canonical correlation of the squared speed of a joint as both parts feel it, 0 to 1; high if they are joined.
+    pub correlation: f64,
+    /// Bootstrap support, given the parts: share of resampled trees that join the two, 0 to 1.
+    pub support: f64,
+    /// Whether the tree joins them.
+    pub in_tree: bool,
+}
+
+/// How the parts of a body are joined.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Joints {
+    /// The rank of the motion subspace of each part, by the label of the part. It is six at most, but for parts whose faces have
+    /// motions of their own, which may count twice; 0 for a part that feels nothing.
+    pub ranks: BTreeMap<usize, usize>,
+    /// The tree between labels of parts: one edge fewer than parts. Which part is the root says nothing.
+    pub tree: Vec<Edge>,
+    /// All pairs of parts, by their labels.
+    pub pairs: Vec<Pair>,
+}
+
+impl Joints {
+    /// The bootstrap support of an edge of the tree, 0 to 1, given the parts.
+    pub fn support(&self, edge: &Edge) -> f64 {
+        let (a, b) = (edge.child.min(edge.parent), edge.child.max(edge.parent));
+        let pair = self.pairs.iter().find(|pair| (pair.part, pair.other) == (a, b));
+        pair.map_or(0.0, |pair| pair.support)
+    }
+
+    /// The tree over parts with these labels, rising, from their motions at the same samples.
+    pub(super) fn of_motions(
+        labels: &[usize],
+        motions: &[MotionSubspace],
+        samples: usize,
+        rng: &mut impl Rng,
+    ) -> Self {
+        let moments = Moments::new(motions, samples, blocks(samples));
+        let correlations = moments.correlations();
+        let tree = maximum_spanning_tree(&correlations);
+        let mut joined = DMatrix::<usize>::zeros(labels.len(), labels.len());
+        for edge in resampled_trees(&moments, rng).iter().flatten() {
+            joined[(edge.child.min(edge.parent), edge.child.max(edge.parent))] += 1;
+        }
+        let pairs = (0..labels.len()).flat_map(|a| (a + 1..labels.len()).map(move |b| (a, b)));
+        let is_edge = |a: usize, b: usize| {
+            tree.iter().any(|edge| [(a, b), (b, a)].contains(&(edge.child, edge.parent)))
+        };
+        // An edge between parts of no correlation is in a tree by its place in the list alone.
+        let support = |a: usize, b: usize| {
+            if correlations[(a, b)] > 0.0 { joined[(a, b)] as f64 / RESAMPLES as f64 } else { 0.0 }
+        };
+        let pair = |(a, b): (usize, usize)| Pair {
+            part: labels[a],
+            other: labels[b],
+            correlation: correlations[(a, b)],
+            support: support(a, b),
+            in_tree: is_edge(a, b),
+        };
+        Self {
+            pairs: pairs.map(pair).collect(),
+            tree: labelled(&tree, labels),
+            ranks: labels.iter().zip(motions).map(|(&part, motion)| (part, motion.rank)).collect(),
+        }
+    }
+}
+
+/// Estimates how given parts are joined, from the pressures on their sensors.
+///
+/// In: M × T pressures, finite and of any sign, and for each of the M sensors the label of its part, any number, or `None` for a
+/// sensor to be left out. `rank`, 1 to 6, is the rank of the motion subspace of each part; without it, the data choose one for
+/// each. Out: the tree, and for each pair of parts their correlation and the bootstrap support of an edge between them. The same
+/// input and state of `rng` give the same bytes, whatever the number of threads.
+///
+/// # Panics
+/// If there is not one label for each sensor, or T is 0.
+pub fn joints(
+    tactile: &Tactile,
+    labels: &[Option<usize>],
+    rank: Option<usize>,
+    rng: &mut impl Rng,
+) -> Joints {
+    let (parts, motions) = parts_and_motions(tactile, labels, rank);
+    Joints::of_motions(&parts, &motions, tactile.samples, rng)
+}
+
+/// The tree of [`joints`] without its support, which takes longest of a short recording.
+pub fn joint_tree(tactile: &Tactile, labels: &[Option<usize>]) -> Vec<Edge> {
+    let (parts, motions) = parts_and_motions(tactile, labels, None);
+    let moments = Moments::new(&motions, tactile.samples, blocks(tactile.samples));
+    labelled(&maximum_spanning_tree(&moments.correlations()), &parts)
+}
+
+/// The labels of the parts, rising, and the motion of each.
+fn parts_and_motions(
+    tactile: &Tactile,
+    labels: &[Option<usize>],
+    rank: Option<usize>,
+) -> (Vec<usize>, Vec<MotionSubspace>) {
+    assert_eq!(labels.len(), tactile.sensors(), "a part for each sensor");
+    let signed = is_signed(tactile);
+    let known: Vec<usize> = labels.iter().copied().flatten().collect();
+    let parts: Vec<usize> = sizes(&known).into_keys().collect();
+    let series = |part: usize| -> Vec<&[f32]> {
+        let own = tactile.series().zip(labels).filter(|(_, label)| **label == Some(part));
+        own.map(|(series, _)| series).collect()
+    };
+    let own = |part: usize| match rank {
+        None => MotionSubspace::of_part(&series(part), signed),
+        given => MotionSubspace::of_cluster(&series(part), given, signed),
+    };
+    let motions = parts.iter().map(|&part| own(part)).collect();
+    (parts, motions)
+}
+
+/// Number of blocks of so many samples.
+fn blocks(samples: usize) -> usize {
+    (samples / BLOCK_SAMPLES).clamp(2, BLOCKS)
+}
+
+/// A tree over places in a list, over the labels there.
+fn labelled(tree: &[Edge], labels: &[usize]) -> Vec<Edge> {
+    tree.iter().map(|edge| Edge { child: labels[edge.child], parent: labels[edge.parent] }).collect()
+}
+
+/// The tree of greatest total correlation.
+pub fn maximum_spanning_tree(correlations: &DMatrix<f64>) -> Vec<Edge> {
+    let nodes: Vec<usize> = (0..correlations.nrows()).collect();
+    prim(&nodes, |child, parent| -correlations[(child, parent)])
+}
+
+/// Trees over blocks of samples drawn with replacement.
+fn resampled_trees(moments: &Moments, rng: &mut impl Rng) -> Vec<Vec<Edge>> {
+    let blocks = moments.blocks();
+    let mut draw = || {
+        let mut counts = vec![0; blocks];
+        (0..blocks).for_each(|_| counts[rng.random_range(0..blocks)] += 1);
+        counts
+    };
+    let counts: Vec<Vec<usize>> = (0..RESAMPLES).map(|_| draw()).collect();
+    counts.par_iter().map(|counts| maximum_spanning_tree(&moments.resampled_correlations(counts))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::numerics::rng::stream;
+    use crate::stages::agent::{Agent, Morphology, Skin};
+    use crate::stages::sense::{Sense, sense};
+    use crate::stages::simulate::fixtures::{INTERVAL, Scene};
+    use crate::stages::simulate::simulate;
+
+    fn felt(morphology: Morphology, coordination: f64) -> (Agent, Tactile) {
+        let mut scene = Scene::new();
+        scene.geometry.morphology = morphology;
+        (scene.geometry.part_length, scene.geometry.part_radius, scene.geometry.gap) = (0.5, 0.03, 0.1);
+        (scene.motion.stiffness, scene.motion.damping) = (0.47, 0.05);
+        (scene.motion.coordination, scene.physics.duration) = (coordination, 1000.0);
+        let agent = Agent::new(&scene.geometry, &Skin { around: 8, along: 3, caps: 0 });
+        let rng = &mut stream(3, 1, "motion", 0);
+        let trajectory = simulate(&agent, &scene.motion, &scene.physics, INTERVAL, rng, &|| ()).unwrap();
+        let tactile =
+            sense(&agent, &trajectory, &Sense { interval: INTERVAL, fluid_density: 1010.0, threshold: 0.0 });
+        (agent, tactile)
+    }
+
+    fn known(agent: &Agent) -> Vec<Option<usize>> {
+        agent.labels().into_iter().map(Some).collect()
+    }
+
+    fn undirected(mut edges: Vec<(usize, usize)>) -> Vec<(usize, usize)> {
+        edges.iter_mut().for_each(|edge| *edge = (edge.0.min(edge.1), edge.0.max(edge.1)));
+        edges.sort_unstable();
+        edges
+    }
+
+    fn edges(found: &Joints) -> Vec<(usize, usize)> {
+        undirected(found.tree.iter().map(|edge| (edge.child, edge.parent)).collect())
+    }
+
+    #[test]
+    fn the_tree_is_recovered_with_joints_that_are_locked_and_that_never_are() {
+        for (morphology, coordination) in
+            [(Morphology::Chain, 0.0), (Morphology::Chain, 0.9), (Morphology::Tee, 0.5)]
+        {
+            let (agent, tactile) = felt(morphology, coordination);
+            let found = joints(&tactile, &known(&agent), None, &mut stream(1, 1, "co-motion", 0));
+            assert_eq!(
+                edges(&found),
+                undirected(agent.tree()),
+                "{morphology:?}, p = {coordination}: {found:?}"
+            );
+            let sum: f64 = found.pairs.iter().map(|pair| pair.support).sum();
+            assert!((sum - 4.0).abs() < 1e-9, "every resampled tree has four edges");
+            assert!(found.tree.iter().all(|edge| found.support(edge) > 0.5));
+            assert_eq!(joint_tree(&tactile, &known(&agent)), found.tree);
+            assert!(found.ranks.values().all(|rank| (3..=5).contains(rank)));
+        }
+    }
+
+    #[test]
+    fn only_simultaneous_motion_tells_the_tree() {
+        let (agent, mut tactile) = felt(Morphology::Chain, 0.5);
+        let correlation = |tactile: &Tactile| {
+            let found = joints(tactile, &known(&agent), None, &mut stream(1, 1, "co-motion", 0));
+            found.pairs.iter().find(|pair| (pair.part, pair.other) == (0, 1)).unwrap().correlation
+        };
+        let before = correlation(&tactile);
+        let own = tactile.samples * agent.labels().iter().filter(|part| **part == 0).count();
+        // The first part feels everything half of the recording later.
+        tactile.pressures[..own].chunks_mut(tactile.samples).for_each(|series| series.rotate_right(5000));
+        assert!(correlation(&tactile) < before - 0.1, "{} {before}", correlation(&tactile));
+    }
+
+    #[test]
+    fn the_number_of_threads_changes_no_bit() {
+        let (agent, tactile) = felt(Morphology::Chain, 0.5);
+        let on = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| joints(&tactile, &known(&agent), None, &mut stream(1, 1, "co-motion", 0)))
+        };
+        assert_eq!(on(1), on(3));
+    }
+}

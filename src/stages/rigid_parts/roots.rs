@@ -1,0 +1,132 @@
+//! Take the roots of pressures: what a sensor says linearly of the motion of its part.
+//!
+//! A sensor at l with the outward normal n feels ρ (ṗ · n)² while it moves outward, and nothing otherwise. Its normal velocity
+//! ṗ · n is linear in the velocity and angular velocity of its part. So the root of a pressure is max(0, c · w), with loadings
+//! c of the sensor and the motion w of the part. Pressures that are also negative (of an incompressible medium behind a
+//! sensor, say) have roots with a sign, c · w.
+
+use faer::linalg::matmul::matmul;
+use faer::{Accum, Mat, MatRef, Par};
+use rayon::prelude::*;
+
+use crate::stages::sense::Tactile;
+
+/// Share of the largest root at a sample from which on a sensor feels something. A smaller root only says that c · w is no
+/// more than it.
+const FELT: f64 = 0.1;
+/// Share of all absolute pressure from which on negative pressures are signal; less is taken as noise about 0.
+const SIGNED: f64 = 0.01;
+
+/// Roots of the pressures on some sensors at some samples.
+pub struct Roots {
+    /// Samples × sensors, √Pa, or normalised.
+    pub values: Mat<f64>,
+    /// At each sample, the least root that is felt.
+    pub thresholds: Vec<f64>,
+    /// Whether negative pressures are signal.
+    pub signed: bool,
+}
+
+impl Roots {
+    /// Of series of pressures, at these samples.
+    pub fn at(series: &[&[f32]], samples: &[usize], signed: bool) -> Self {
+        let root = |pressure: f32| match signed {
+            true => f64::from(pressure.abs()).sqrt().copysign(f64::from(pressure)),
+            false => f64::from(pressure.max(0.0)).sqrt(),
+        };
+        let values = Mat::from_fn(samples.len(), series.len(), |t, sensor| root(series[sensor][samples[t]]));
+        Self::new(values, signed)
+    }
+
+    fn new(values: Mat<f64>, signed: bool) -> Self {
+        let thresholds = if signed {
+            vec![f64::NEG_INFINITY; values.nrows()]
+        } else {
+            let mut most = vec![0.0; values.nrows()];
+            for sensor in 0..values.ncols() {
+                let roots = values.col_as_slice(sensor);
+                most.iter_mut().zip(roots).for_each(|(most, root)| *most = f64::max(*most, *root));
+            }
+            most.into_iter().map(|most| f64::max(FELT * most, f64::MIN_POSITIVE)).collect()
+        };
+        Self { values, thresholds, signed }
+    }
+
+    /// Of these sensors only.
+    pub fn select(&self, sensors: &[usize]) -> Self {
+        Self::new(columns(&self.values, sensors), self.signed)
+    }
+
+    /// Divided by the root mean square of each sensor, where it feels anything.
+    pub fn normalised(mut self) -> Self {
+        for sensor in 0..self.sensors() {
+            let roots = self.values.col_as_slice_mut(sensor);
+            let scale = (roots.iter().map(|root| root * root).sum::<f64>() / roots.len() as f64).sqrt();
+            if scale > 0.0 {
+                roots.iter_mut().for_each(|root| *root /= scale);
+            }
+        }
+        Self::new(self.values, self.signed)
+    }
+
+    /// Averages over samples: of the products of two sensors' roots, sensors × sensors, and of each sensor's roots.
+    pub fn moments(&self) -> (Mat<f64>, Vec<f64>) {
+        let share = 1.0 / self.samples().max(1) as f64;
+        let mean = |sensor| self.values.col_as_slice(sensor).iter().sum::<f64>() * share;
+        let means = (0..self.sensors()).map(mean).collect();
+        (product(self.values.transpose(), self.values.as_ref()) * faer::Scale(share), means)
+    }
+
+    /// Number of sensors.
+    pub fn sensors(&self) -> usize {
+        self.values.ncols()
+    }
+
+    /// Number of samples.
+    pub fn samples(&self) -> usize {
+        self.values.nrows()
+    }
+
+    /// Whether nothing is felt.
+    pub fn is_empty(&self) -> bool {
+        self.values.norm_max() == 0.0
+    }
+
+    /// Each sensor's root minus that of the sensor that feels least at the same samples: linear in w without censoring, if the
+    /// two are opposite to each other and never feel at the same sample.
+    pub fn differences(&self) -> Mat<f64> {
+        let together = product(self.values.transpose(), self.values.as_ref());
+        let opposite = |sensor: usize| {
+            let alive = (0..self.sensors()).filter(|other| together[(*other, *other)] > 0.0);
+            let likeness = |other: usize| together[(sensor, other)] / together[(other, other)].sqrt();
+            alive.min_by(|a, b| likeness(*a).total_cmp(&likeness(*b))).unwrap_or(sensor)
+        };
+        let opposites: Vec<usize> = (0..self.sensors()).map(opposite).collect();
+        &self.values - columns(&self.values, &opposites)
+    }
+}
+
+/// The product of two matrices on one thread, whatever faer's global setting: sums depend on the number of threads.
+pub fn product(left: MatRef<'_, f64>, right: MatRef<'_, f64>) -> Mat<f64> {
+    let mut product = Mat::zeros(left.nrows(), right.ncols());
+    matmul(product.as_mut(), Accum::Replace, left, right, 1.0, Par::Seq);
+    product
+}
+
+/// Some columns.
+fn columns(matrix: &Mat<f64>, which: &[usize]) -> Mat<f64> {
+    Mat::from_fn(matrix.nrows(), which.len(), |row, at| matrix[(row, which[at])])
+}
+
+/// Whether negative pressures are signal, not noise about 0.
+pub fn is_signed(tactile: &Tactile) -> bool {
+    let sums = |series: &[f32]| {
+        series.iter().fold((0.0, 0.0), |(below, all), pressure| {
+            let size = f64::from(pressure.abs());
+            (if *pressure < 0.0 { below + size } else { below }, all + size)
+        })
+    };
+    let sums: Vec<(f64, f64)> = tactile.pressures.par_chunks_exact(tactile.samples).map(sums).collect();
+    let (below, all) = sums.into_iter().fold((0.0, 0.0), |a, b| (a.0 + b.0, a.1 + b.1));
+    below > SIGNED * all
+}

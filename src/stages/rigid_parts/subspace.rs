@@ -1,0 +1,190 @@
+//! Estimate the motion subspace of a part from the pressures on its sensors: its rank, and a basis over all samples.
+
+use rayon::prelude::*;
+
+use super::faces::faces;
+use super::factorisation::{Fit, MAX_RANK};
+use super::roots::Roots;
+use super::stratified::stratified;
+
+/// Sensors that are used, spread over all: enough for rank six.
+const MAX_SENSORS: usize = 256;
+/// Samples that c is learned from, spread over all at which anything is felt.
+const MAX_SAMPLES: usize = 2000;
+/// Iterations in which c and w are found.
+const ITERATIONS: usize = 16;
+/// Share of what the best rank explains that a lower rank may leave unexplained.
+const NEGLIGIBLE: f64 = 0.01;
+/// Rank from which on the sensors of a face say something of how a part rotates. The end of a thin cylinder has rank one.
+pub const ROTATION_RANK: usize = 3;
+/// Rank of a face from which on its motion may tell it from other faces: more than the end of a thin cylinder has.
+pub const FACE_RANK: usize = 2;
+
+/// The motion subspace of a part: a basis of it, which is the motion of the part up to a linear map.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MotionSubspace {
+    /// k, at most [`MAX_RANK`] if it is that of one cluster of sensors; 0 if these feel nothing.
+    pub rank: usize,
+    /// w, T × k, by sample, in √Pa; along the principal axes of what the sensors feel.
+    pub basis: Vec<f64>,
+}
+
+impl MotionSubspace {
+    /// Of the sensors of a cluster, from their series of T pressures, which must be finite.
+    ///
+    /// `rank` is k; without it, the lowest that explains nearly what the best one does. `signed` says whether negative pressures
+    /// are signal.
+    pub fn of_cluster(series: &[&[f32]], rank: Option<usize>, signed: bool) -> Self {
+        /// Samples whose roots are in memory at once.
+        const BLOCK: usize = 240;
+        let series: Vec<&[f32]> =
+            stratified(series.len(), MAX_SENSORS).map(|sensor| series[sensor]).collect();
+        let samples = series.first().map_or(0, |series| series.len());
+        let Some(fit) = learn(&Roots::at(&series, &felt_samples(&series, samples), signed), rank) else {
+            return Self { rank: 0, basis: Vec::new() };
+        };
+        let k = fit.rank();
+        let mut basis = vec![0.0; samples * k];
+        basis.par_chunks_mut(BLOCK * k).enumerate().for_each(|(block, values)| {
+            let samples: Vec<usize> = (block * BLOCK..block * BLOCK + values.len() / k).collect();
+            let roots = Roots::at(&series, &samples, signed);
+            values.copy_from_slice(&roots.motion(&fit));
+        });
+        Self { rank: k, basis }
+    }
+
+    /// Of all sensors of a part: of its large faces together, and of each face of rank one or two by itself, since few such
+    /// sensors would hardly count among the rest.
+    ///
+    /// Where these ranks sum up to more than [`MAX_RANK`], faces share components, and one subspace is learned from all sensors.
+    pub fn of_part(series: &[&[f32]], signed: bool) -> Self {
+        let samples = series.first().map_or(0, |series| series.len());
+        let some: Vec<usize> = stratified(samples, MAX_SAMPLES).collect();
+        let every: Vec<usize> = (0..series.len()).collect();
+        let faces = faces(&Roots::at(series, &some, signed), &every);
+        let largest = faces.iter().map(Vec::len).max().unwrap_or(0);
+        let of = |face: &[usize]| {
+            Self::of_cluster(&face.iter().map(|&sensor| series[sensor]).collect::<Vec<_>>(), None, signed)
+        };
+        let by_itself = |face: &Vec<usize>| {
+            (face.len() < largest).then(|| of(face)).filter(|own| own.rank < ROTATION_RANK)
+        };
+        let alone: Vec<Option<Self>> = faces.par_iter().map(by_itself).collect();
+        let rest = faces.iter().zip(&alone).filter(|(_, own)| own.is_none()).flat_map(|(face, _)| face);
+        let mut rest: Vec<usize> = rest.copied().collect();
+        rest.sort_unstable();
+        let whole = alone.iter().flatten().fold(of(&rest), |whole, own| whole.with(own));
+        if whole.rank > MAX_RANK { of(&every) } else { whole }
+    }
+
+    /// w at a sample.
+    pub fn at(&self, t: usize) -> &[f64] {
+        &self.basis[t * self.rank..][..self.rank]
+    }
+
+    /// The sum of this subspace and another one at the same samples; components that both have count twice.
+    pub fn with(&self, other: &Self) -> Self {
+        if self.rank == 0 || other.rank == 0 {
+            return if self.rank == 0 { other.clone() } else { self.clone() };
+        }
+        let samples = self.basis.len() / self.rank;
+        let basis = (0..samples).flat_map(|t| [self.at(t), other.at(t)].concat()).collect();
+        Self { rank: self.rank + other.rank, basis }
+    }
+}
+
+/// Samples that c is learned from, of those at which a sensor feels anything.
+fn felt_samples(series: &[&[f32]], samples: usize) -> Vec<usize> {
+    let felt: Vec<usize> =
+        (0..samples).into_par_iter().filter(|t| series.iter().any(|series| series[*t] != 0.0)).collect();
+    stratified(felt.len(), MAX_SAMPLES).map(|at| felt[at]).collect()
+}
+
+/// c and w; `None` if nothing is felt.
+fn learn(roots: &Roots, rank: Option<usize>) -> Option<Fit> {
+    if roots.is_empty() {
+        return None;
+    }
+    let start = roots.start();
+    let most = start.max_rank();
+    if let Some(k) = rank {
+        return Some(roots.fit(&start, k.min(most), ITERATIONS));
+    }
+    let with = |k: usize| {
+        let fit = roots.fit(&start, k, ITERATIONS);
+        (roots.total_residual(&fit), fit)
+    };
+    let fits: Vec<(f64, Fit)> = (1..=most).into_par_iter().map(with).collect();
+    let least = fits.iter().map(|(residual, _)| *residual).fold(f64::INFINITY, f64::min);
+    fits.into_iter().find(|(residual, _)| residual - least <= NEGLIGIBLE * (1.0 - least)).map(|(_, fit)| fit)
+}
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::DMatrix;
+    use rand::RngExt;
+
+    use super::*;
+    use crate::numerics::rng::stream;
+
+    /// A smooth random motion of rank k, and the pressures on sensors with random c: T × k, and M series.
+    fn felt(k: usize, sensors: usize, signed: bool) -> (DMatrix<f64>, Vec<Vec<f32>>) {
+        let samples = 3000;
+        let mut rng = stream(1, 1, "felt", k);
+        let mut normal = || (0..12).map(|_| rng.random_range(-0.5..0.5)).sum::<f64>();
+        let mut w = DMatrix::zeros(samples, k);
+        for t in 1..samples {
+            for at in 0..k {
+                w[(t, at)] = 0.9 * w[(t - 1, at)] + normal() / (1.0 + at as f64);
+            }
+        }
+        let c: DMatrix<f64> = DMatrix::from_fn(k, sensors, |_, _| normal());
+        let roots = &w * &c;
+        let pressure =
+            |root: &f64| if signed { (root * root.abs()) as f32 } else { root.max(0.0).powi(2) as f32 };
+        let series = roots.column_iter().map(|root| root.iter().map(pressure).collect()).collect();
+        (w, series)
+    }
+
+    /// The share of the true motion's squares that no linear map of the estimated one explains.
+    fn unexplained(w: &DMatrix<f64>, found: &MotionSubspace) -> f64 {
+        let x = DMatrix::from_row_slice(w.nrows(), found.rank, &found.basis);
+        let fitted = &x * x.clone().svd(true, true).solve(w, 1e-12).unwrap();
+        (w - fitted).norm_squared() / w.norm_squared()
+    }
+
+    #[test]
+    fn a_motion_is_recovered_up_to_a_linear_map() {
+        for (k, signed) in [(2, false), (4, false), (6, false), (4, true)] {
+            let (w, series) = felt(k, 40, signed);
+            let series: Vec<&[f32]> = series.iter().map(Vec::as_slice).collect();
+            let found = MotionSubspace::of_cluster(&series, Some(k), signed);
+            let error = unexplained(&w, &found);
+            assert!(error < 0.05, "k = {k}, signed {signed}: {error}");
+            // A lower rank is not the whole motion.
+            let lower = unexplained(&w, &MotionSubspace::of_cluster(&series, Some(k - 1), signed));
+            assert!(lower > error + 0.02, "k = {k}, signed {signed}: {lower}");
+        }
+    }
+
+    #[test]
+    fn the_data_choose_the_rank() {
+        for (k, signed) in [(2, false), (3, false), (4, true)] {
+            let (_, series) = felt(k, 40, signed);
+            let series: Vec<&[f32]> = series.iter().map(Vec::as_slice).collect();
+            assert_eq!(MotionSubspace::of_cluster(&series, None, signed).rank, k);
+        }
+    }
+
+    #[test]
+    fn no_touch_is_no_motion() {
+        let still = [0.0_f32; 50];
+        assert_eq!(MotionSubspace::of_cluster(&[&still, &still], None, false).rank, 0);
+        assert_eq!(MotionSubspace::of_cluster(&[], None, false).rank, 0);
+        // A single sensor that feels something at a single sample.
+        let mut once = still;
+        once[49] = 1.0;
+        let found = MotionSubspace::of_cluster(&[&once], None, false);
+        assert!(found.basis.iter().all(|value| value.is_finite()));
+    }
+}
