@@ -1,6 +1,7 @@
 //! Estimate means and rates for each condition of an experiment, with intervals over simulations.
 
-use super::statistics::{Estimate, Resamples, mean, rate, spread};
+use super::bootstrap::Resamples;
+use super::statistics::{Estimate, mean, rate, spread};
 use crate::numerics::rng::stream;
 use crate::pipeline::{BaselineRecord, Condition, Record};
 use crate::stages::baselines::Clustering;
@@ -19,7 +20,8 @@ pub struct Conditions {
 impl Conditions {
     /// Takes the records of `simulations` simulations; the bootstrap's random numbers derive from `seed`.
     pub fn new(records: Vec<Record>, simulations: usize, seed: u64) -> Self {
-        let resamples = Resamples::new(simulations, &mut stream(seed, 0, "bootstrap", 0));
+        const RESAMPLES: usize = 10_000;
+        let resamples = Resamples::new(simulations, RESAMPLES, &mut stream(seed, 0, "bootstrap", 0));
         Self { records, simulations, resamples }
     }
 
