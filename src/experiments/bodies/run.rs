@@ -43,10 +43,10 @@ pub fn study(design: &Design, text: &str, path: &Path, out: &Path) -> Result<(),
     {
         settings.check_times(body.body.agent.sites.len()).map_err(crate::settings::SettingsError::from)?;
     }
-    // What a movement gives does not hang on how many there are: a study of more goes on from what one of fewer left.
-    // It hangs on the bodies as they were read: a file that changes makes another study.
-    let agents: Vec<String> = bodies.iter().map(|body| format!("{:?}", body.body.agent)).collect();
-    let checkpoints = Checkpoints::new(out, &(Design { movements: 0, ..design.clone() }, agents));
+    // What a simulation gives does not depend on how many there are: a study of more goes on from what one of fewer left.
+    // It depends on the bodies: a file that changes makes another study.
+    let hashes: Vec<&str> = bodies.iter().map(|body| body.sha256.as_str()).collect();
+    let checkpoints = Checkpoints::new(out, &(Design { movements: 0, ..design.clone() }, hashes));
     let each = design.recordings.len() as u64 + 1;
     let count = bodies.len() * settings.len() * design.movements;
     let bar = progress(each * count as u64, format!("{count} simulations"));
