@@ -18,7 +18,7 @@ use crate::analysis::published::{Figure, figures};
 use crate::files::manifest::{HashedFile, Manifest};
 use crate::files::provenance::Provenance;
 use crate::files::{FileError, read_text, tables, write_text};
-use crate::settings::PAPER;
+use crate::settings::{Described, described};
 
 /// Writes `report.html` into the folder of an experiment.
 ///
@@ -185,8 +185,9 @@ fn settings_section(settings: &Value) -> Markup {
                 thead { tr { th scope="col" { "setting" } th scope="col" { "value" } th scope="col" { "source" }
                     th scope="col" { "meaning" } } }
                 tbody {
-                    @for Setting { key, default, source, meaning } in stated_settings() {
+                    @for Described { key, default, source, meaning } in described() {
                         @let value = text(key.split('.').fold(settings, |table, name| &table[name]));
+                        @let default = text(&default);
                         tr {
                             td data-label="setting" { code { (key) } }
                             td data-label="value" {
@@ -201,45 +202,6 @@ fn settings_section(settings: &Value) -> Markup {
             }
         }
     }
-}
-
-/// A line of `reproduce/paper.toml`.
-struct Setting {
-    key: String,
-    default: String,
-    source: String,
-    meaning: String,
-}
-
-/// All settings with what the comments of `reproduce/paper.toml` say of them: `key = value # source: meaning`.
-fn stated_settings() -> Vec<Setting> {
-    let mut section = "";
-    let mut settings: Vec<Setting> = Vec::new();
-    for line in PAPER.lines() {
-        if let Some(name) = line.strip_prefix('[').and_then(|rest| rest.strip_suffix(']')) {
-            section = name;
-        }
-        let Some((assignment, comment)) = line.split_once('#') else { continue };
-        let Some((name, value)) = assignment.split_once('=') else {
-            // A comment that goes on, in a line of its own that is not a heading's.
-            if let Some(Setting { meaning, .. }) = settings.last_mut().filter(|_| line.starts_with(' ')) {
-                *meaning += &format!(" {}", comment.trim());
-            }
-            continue;
-        };
-        let (source, meaning) = comment.split_once(": ").unwrap_or((comment, ""));
-        // The same text for a value as JSON has, in which the manifest keeps it.
-        let table: toml::Table =
-            format!("value = {value}").parse().expect("a line of TOML; a test checks it");
-        let default = serde_json::to_value(&table["value"]).expect("a setting's value is plain");
-        settings.push(Setting {
-            key: format!("{section}.{}", name.trim()),
-            default: text(&default),
-            source: source.trim().to_owned(),
-            meaning: meaning.trim().to_owned(),
-        });
-    }
-    settings
 }
 
 fn manifest_section(manifest: &Manifest) -> Markup {
