@@ -53,7 +53,7 @@ mod tests {
     use crate::pipeline::Record;
     use crate::stages::schema::{Model, Sampler};
 
-    /// Ten draws of each of eight simulations at d = 14, all eligible; `right` says how many trees of a simulation are
+    /// Ten samples of each of eight simulations at d = 14, all eligible; `right` says how many trees of a simulation are
     /// right.
     fn evidence(right: impl Fn(usize) -> usize) -> Evidence {
         let record = |simulation: usize, chain: usize| Record {

@@ -2,6 +2,7 @@
 
 mod artifacts;
 mod batch;
+mod beginning;
 pub mod bodies;
 mod cache;
 pub mod compare;

@@ -14,4 +14,4 @@ mod space;
 pub mod specifications;
 mod values;
 
-pub use self::pictures::render;
+pub use self::pictures::{Picture, render};
