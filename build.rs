@@ -18,7 +18,10 @@ fn main() {
         }
     }
     let revision = packaged_revision().or_else(|| {
-        output("git", &["--no-optional-locks", "describe", "--always", "--exclude=*", "--dirty", "--abbrev=40"])
+        output(
+            "git",
+            &["--no-optional-locks", "describe", "--always", "--exclude=*", "--dirty", "--abbrev=40"],
+        )
     });
     let rustc = output(&std::env::var("RUSTC").unwrap_or("rustc".into()), &["--version"]);
     let ode = std::env::var("DEP_ODE_VERSION").expect("ode-sys's build script reports ODE's version");

@@ -72,7 +72,8 @@ pub mod internals {
     pub use crate::analysis::statistics;
     pub use crate::experiments::verify;
     pub use crate::numerics::log_sum::log_sum;
-    pub use crate::report::{markdown, page, plot};
+    pub use crate::report::page::Page;
+    pub use crate::report::{markdown, plot};
 
     /// The revision of the repository that the program was built from.
     pub const REVISION: &str = env!("BODYSCHEMA_REVISION");

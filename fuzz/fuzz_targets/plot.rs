@@ -5,7 +5,7 @@
 
 use std::fs;
 
-use bodyschema::internals::{figures, page, plot};
+use bodyschema::internals::{Page, figures, plot};
 use bodyschema_fuzz::{accepted, file, folder};
 use libfuzzer_sys::fuzz_target;
 
@@ -16,7 +16,7 @@ fuzz_target!(|data: &[u8]| {
         Some(figure) => {
             let table = file(&format!("figures/{}.csv", figure.name), rest);
             if let Some(pictures) = accepted(plot::render(&folder().join("figures"))) {
-                assert_eq!(pictures, [format!("{}.svg", figure.name)]);
+                assert!(pictures.iter().map(|picture| &picture.name).eq([&figure.name]));
                 let picture = table.with_extension("svg");
                 let svg = fs::read_to_string(&picture).expect("it was drawn");
                 assert!(svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>"));
@@ -28,7 +28,7 @@ fuzz_target!(|data: &[u8]| {
             let mut files = rest.splitn(2, |byte| *byte == 0);
             file("claims.csv", files.next().unwrap_or_default());
             file("manifest.json", files.next().unwrap_or_default());
-            accepted(page::write(folder()));
+            accepted(Page::read(folder()).and_then(|page| page.write(folder())));
         }
     }
 });

@@ -1,13 +1,14 @@
 //! Estimate means and rates for each condition of an experiment, with intervals over simulations.
 
-use super::statistics::{Estimate, Resamples, mean, rate, spread};
+use super::bootstrap::Resamples;
+use super::statistics::{Estimate, mean, rate, spread};
 use crate::numerics::rng::stream;
 use crate::pipeline::{BaselineRecord, Condition, Record};
 use crate::stages::baselines::Clustering;
 
-/// All evaluated draws of an experiment.
+/// All evaluated posterior samples of an experiment.
 ///
-/// Draws of one simulation share a body map, so that the simulation is the unit of every interval. With one
+/// Samples of one simulation share a body map, so that the simulation is the unit of every interval. With one
 /// simulation it is the chain, and every statement holds for that simulation alone.
 #[derive(Debug, Clone)]
 pub struct Conditions {
@@ -19,7 +20,8 @@ pub struct Conditions {
 impl Conditions {
     /// Takes the records of `simulations` simulations; the bootstrap's random numbers derive from `seed`.
     pub fn new(records: Vec<Record>, simulations: usize, seed: u64) -> Self {
-        let resamples = Resamples::new(simulations, &mut stream(seed, 0, "bootstrap", 0));
+        const RESAMPLES: usize = 10_000;
+        let resamples = Resamples::new(simulations, RESAMPLES, &mut stream(seed, 0, "bootstrap", 0));
         Self { records, simulations, resamples }
     }
 
@@ -28,7 +30,7 @@ impl Conditions {
         self.simulations
     }
 
-    /// The draws of these simulations, counted from 1, each as often as it is named, as if all were of one simulation and
+    /// The samples of these simulations, counted from 1, each as often as it is named, as if all were of one simulation and
     /// there were no other.
     pub fn redrawn(&self, simulations: &[usize]) -> Self {
         let of = |simulation: &usize| {
@@ -80,12 +82,12 @@ impl Conditions {
         all
     }
 
-    /// The draws of one condition.
+    /// The samples of one condition.
     pub fn records(&self, condition: Condition) -> impl Iterator<Item = &Record> + Clone {
         self.records.iter().filter(move |record| record.condition() == condition)
     }
 
-    /// A value of each draw of one condition, by simulation; draws without the value are left out.
+    /// A value of each sample of one condition, by simulation; samples without the value are left out.
     pub fn by_simulation(
         &self,
         condition: Condition,
@@ -114,7 +116,7 @@ impl Conditions {
         Estimate { interval: mean.interval.map(|(low, high)| (low, high.min(1.0))), ..mean }
     }
 
-    /// Share of right trees among the eligible draws of some conditions together.
+    /// Share of right trees among the eligible samples of some conditions together.
     pub fn tree_rate(&self, conditions: &[Condition]) -> Estimate {
         let mut groups = vec![Vec::new(); self.simulations];
         for &condition in conditions {
@@ -125,7 +127,7 @@ impl Conditions {
         self.rate(&groups)
     }
 
-    /// 1 for a right tree and 0 for a wrong one, of each eligible draw of one condition, by simulation.
+    /// 1 for a right tree and 0 for a wrong one, of each eligible sample of one condition, by simulation.
     pub fn trees(&self, condition: Condition) -> Vec<Vec<f64>> {
         self.by_simulation(condition, |record| {
             record.eligible.then(|| f64::from(u8::from(record.tree_correct)))

@@ -1,5 +1,6 @@
-//! Turn the draws of an experiment into estimates with intervals, and these into verdicts on the paper's claims.
+//! Turn the posterior samples of an experiment into estimates with intervals, and these into verdicts on the paper's claims.
 
+pub mod bootstrap;
 pub mod cells;
 pub mod claims;
 pub mod conditions;

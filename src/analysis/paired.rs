@@ -1,15 +1,12 @@
 //! Say how far a claim's value is from that of another configuration on the same simulations.
 
-use rand::RngExt;
-use rayon::prelude::*;
-
+use super::bootstrap::{Resamples, percentile_interval};
 use super::claims::outside;
 use super::measure::{Evidence, measure};
 use super::published::Claim;
-use super::statistics::percentile_interval;
 use crate::numerics::rng::stream;
 
-/// Draws of simulations with replacement. Each measures the claim anew, which takes a millisecond.
+/// Number of resamples. Each measures the claim anew, which takes a millisecond.
 const RESAMPLES: usize = 1000;
 /// Number of simulations from which on a change has an interval.
 const ENOUGH: usize = 5;
@@ -38,14 +35,12 @@ pub fn change(
     if simulations < ENOUGH {
         return Some((of_second - of_first, None));
     }
-    let mut rng = stream(seed, 0, "paired bootstrap", 0);
-    let drawn: Vec<Vec<usize>> = (0..RESAMPLES)
-        .map(|_| (0..simulations).map(|_| rng.random_range(1..=simulations)).collect())
-        .collect();
-    let redrawn = |evidence: &Evidence, drawn: &[usize]| values(&evidence.redrawn(drawn)).get(at).copied()?;
-    let mut differences: Vec<f64> =
-        drawn.par_iter().filter_map(|drawn| Some(redrawn(second, drawn)? - redrawn(first, drawn)?)).collect();
-    differences.sort_by(f64::total_cmp);
+    let resamples = Resamples::new(simulations, RESAMPLES, &mut stream(seed, 0, "paired bootstrap", 0));
+    let differences = resamples.values(|drawn| {
+        let numbers: Vec<usize> = drawn.iter().map(|simulation| simulation + 1).collect();
+        let redrawn = |evidence: &Evidence| values(&evidence.redrawn(&numbers)).get(at).copied()?;
+        Some(redrawn(second)? - redrawn(first)?)
+    });
     let enough = 2 * differences.len() >= RESAMPLES;
     Some((of_second - of_first, enough.then(|| percentile_interval(&differences, simulations))))
 }
@@ -58,7 +53,7 @@ mod tests {
     use crate::pipeline::Record;
     use crate::stages::schema::{Model, Sampler};
 
-    /// Ten draws of each of eight simulations at d = 14, all eligible; `right` says how many trees of a simulation are
+    /// Ten samples of each of eight simulations at d = 14, all eligible; `right` says how many trees of a simulation are
     /// right.
     fn evidence(right: impl Fn(usize) -> usize) -> Evidence {
         let record = |simulation: usize, chain: usize| Record {

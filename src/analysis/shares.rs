@@ -1,9 +1,10 @@
 //! Say in what share of a multiverse claims hold, and how often it would look so if the published rate were true.
 
-use rand::{Rng, RngExt};
+use rand::Rng;
 use rand_distr::{Beta, Binomial, Distribution};
 use serde::Serialize;
 
+use super::bootstrap;
 use super::statistics::{Estimate, quantile, wilson};
 
 /// Whether something holds in a specification.
@@ -32,18 +33,10 @@ pub fn share(held: &[Held], rng: &mut impl Rng) -> Estimate {
         return Estimate::bare(None, 0);
     }
     let value = held.iter().filter(|one| one.holds).count() as f64 / n as f64;
-    let mut resampled: Vec<f64> = (0..RESAMPLES)
-        .map(|_| {
-            let (mut sum, mut n) = (0.0, 0);
-            for _ in 0..movements.len() {
-                let (_, all) = &movements[rng.random_range(0..movements.len())];
-                sum += (0..all.len()).map(|_| all[rng.random_range(0..all.len())]).sum::<f64>();
-                n += all.len();
-            }
-            sum / n as f64
-        })
-        .collect();
-    resampled.sort_by(f64::total_cmp);
+    let sizes: Vec<usize> = movements.iter().map(|(_, all)| all.len()).collect();
+    let resampled = bootstrap::of_clusters(&sizes, RESAMPLES, rng, |drawn| {
+        drawn.iter().map(|&(movement, at)| movements[movement].1[at]).sum::<f64>() / drawn.len() as f64
+    });
     let (low, high) = wilson(value * movements.len() as f64, movements.len() as f64);
     let interval = (quantile(&resampled, 0.025).min(low), quantile(&resampled, 0.975).max(high));
     Estimate { value: Some(value), n, interval: Some(interval), simulations: movements.len(), spread: None }

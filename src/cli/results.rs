@@ -10,7 +10,8 @@ use super::output::say;
 use crate::experiments::verify::{Finding, Outcome, against_manifest, against_reference};
 use crate::experiments::{bodies, reproduce};
 use crate::files::manifest::Manifest;
-use crate::report::{page, plot};
+use crate::report::page::Page;
+use crate::report::plot;
 use crate::study;
 
 /// Renders the figures of an experiment or study again from their tables, and writes its report again.
@@ -39,19 +40,21 @@ impl Plot {
             say(format!("bodies.md and its figure in {}", folder.display()))?;
             return Ok(ExitCode::SUCCESS);
         }
-        if Manifest::is_in(folder) {
-            reproduce::rejudge(folder)?;
-        }
+        let finished = Manifest::is_in(folder);
+        let judged_again = if finished { reproduce::rejudge(folder)? } else { None };
         let figures = folder.join("figures");
-        let pictures = plot::render(&figures)?;
+        let pictures = match judged_again {
+            Some(pictures) => pictures,
+            None => plot::render(&figures)?,
+        };
         ensure!(
             !pictures.is_empty(),
             "{}: has no table of a figure (fig04-agent.csv to fig11b-tree.csv)",
             figures.display()
         );
         say(format!("{} figures in {}", pictures.len(), figures.display()))?;
-        if Manifest::is_in(folder) {
-            page::write(folder)?;
+        if finished {
+            Page::read(folder)?.write(folder)?;
             say(format!("report in {}", folder.join("report.html").display()))?;
         }
         Ok(ExitCode::SUCCESS)

@@ -10,6 +10,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use indicatif::ProgressBar;
 
 use super::artifacts::{ArtifactFiles, Artifacts};
+use super::beginning::beginning;
 use super::cache::StageCache;
 use super::error::ExperimentError;
 use super::prefetch::Prefetch;
@@ -21,7 +22,7 @@ use crate::pipeline::{
     infer_and_score,
 };
 use crate::stages::schema::Sample;
-use crate::stages::simulate::Resolution;
+use crate::stages::simulate::{Resolution, Trajectory};
 
 /// What a task found.
 #[derive(Debug, Clone, Default)]
@@ -38,6 +39,8 @@ pub struct Found {
     pub kept: Option<Artifacts>,
     /// How well the physics step resolved its movement.
     pub resolution: Resolution,
+    /// How its movement begins, if the task [is shown](Task::is_shown) and no checkpoint spared its simulation.
+    pub beginning: Option<Trajectory>,
 }
 
 /// What a task found, or why it failed.
@@ -95,11 +98,16 @@ impl Batch<'_> {
                 self.bar.set_message(task.name.clone());
                 // A failure is not kept among the checkpoints: what failed may succeed on a machine or with a library
                 // that differs.
-                let mut map = || {
-                    shared.map(&task.settings, task.simulation, &task.dimensions(), || prefetch.movement(at))
+                let mut begun = None;
+                let mut simulate = || {
+                    let movement = prefetch.movement(at)?;
+                    begun = task.is_shown().then(|| beginning(&movement, &task.settings));
+                    Ok(movement)
                 };
+                let mut map =
+                    || shared.map(&task.settings, task.simulation, &task.dimensions(), &mut simulate);
                 let outcome = match self.try_to_finish(task, &mut map, progress) {
-                    Ok(found) => Ok(found),
+                    Ok(found) => Ok(Found { beginning: begun, ..found }),
                     Err(Stop::Failed(reason)) if task.keep == Keep::Nothing => Err(reason),
                     Err(Stop::Failed(reason)) => return Err(ExperimentError::Stage(reason)),
                     Err(Stop::File(error)) => return Err(error.into()),

@@ -2,6 +2,7 @@
 
 mod artifacts;
 pub mod batch;
+mod beginning;
 pub mod bodies;
 pub mod cache;
 pub mod error;

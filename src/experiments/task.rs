@@ -52,6 +52,11 @@ impl Task {
         all
     }
 
+    /// Whether figures and the viewer show how its movement begins: that of the first simulation whose files are results.
+    pub fn is_shown(&self) -> bool {
+        self.simulation == 1 && self.keep != Keep::Nothing
+    }
+
     /// Whether another task needs the same movement.
     pub fn shares_movement(&self, other: &Self) -> bool {
         let key = |task: &Self| Keys::of(&task.settings, task.simulation, &[]).movement;

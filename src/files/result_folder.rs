@@ -80,14 +80,16 @@ impl ResultFolder {
     }
 
     /// Writes the manifest, with the hashes of all files that were written or remembered, and the crate, with the same.
+    /// Returns the manifest with the hashes.
     ///
     /// # Errors
     /// If a file cannot be read, or one of the two not written.
-    pub fn write_manifest(&self, manifest: Manifest) -> Result<(), FileError> {
+    pub fn write_manifest(&self, manifest: Manifest) -> Result<Manifest, FileError> {
         let hash = |name: &String| HashedFile::new(name, &self.path.join(name));
         let outputs = self.names.iter().map(hash).collect::<Result<_, _>>()?;
         let manifest = Manifest { outputs, ..manifest };
         manifest.write(&self.path)?;
-        ro_crate::write(&self.path, &manifest, self.begun)
+        ro_crate::write(&self.path, &manifest, self.begun)?;
+        Ok(manifest)
     }
 }

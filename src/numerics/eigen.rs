@@ -5,8 +5,13 @@
 //! decomposition is of no use here: it takes eigenvalues of largest magnitude, the negative ones too, and its
 //! blocks are single vectors, which do not see that an eigenvalue is multiple.
 
+use faer::diag::Diag;
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::evd::{ComputeEigenvectors, self_adjoint_evd, self_adjoint_evd_scratch};
+use faer::linalg::householder;
 use faer::linalg::matmul::matmul;
-use faer::{Accum, Mat, MatMut, MatRef, Par, Side};
+use faer::linalg::qr::no_pivoting::factor;
+use faer::{Accum, Conj, Mat, MatMut, MatRef, Par};
 use rand::RngExt;
 use rayon::prelude::*;
 
@@ -34,6 +39,9 @@ const RESIDUAL: f64 = 20.0;
 /// Rows of a product that one thread sums, in an order that does not depend on the number of threads.
 const ROWS: usize = 64;
 
+/// faer's results depend on its number of threads.
+const ONE_THREAD: Par = Par::Seq;
+
 /// Eigenvalues and eigenvectors of a symmetric matrix.
 #[derive(Debug, Clone)]
 pub struct Eigen {
@@ -53,8 +61,6 @@ pub struct NoConvergence;
 /// # Errors
 /// If the decomposition does not converge.
 pub fn largest(matrix: MatRef<'_, f64>, wanted: usize) -> Result<Eigen, NoConvergence> {
-    // faer's results depend on its number of threads.
-    faer::set_global_parallelism(Par::Seq);
     let wanted = wanted.min(matrix.nrows());
     let block = wanted + SPARE;
     let few = 2 * BLOCKS * block <= matrix.nrows();
@@ -66,11 +72,48 @@ pub fn largest(matrix: MatRef<'_, f64>, wanted: usize) -> Result<Eigen, NoConver
 
 /// The largest eigenvalues by a decomposition of the whole matrix.
 fn whole(matrix: MatRef<'_, f64>, wanted: usize) -> Result<Eigen, NoConvergence> {
-    let decomposition = matrix.self_adjoint_eigen(Side::Lower).map_err(|_| NoConvergence)?;
-    let (ascending, vectors) = (decomposition.S().column_vector(), decomposition.U());
+    let (ascending, vectors) = decompose(matrix)?;
     let n = matrix.nrows();
     let values = (0..wanted).map(|k| ascending[n - 1 - k]).collect();
     Ok(Eigen { values, vectors: vectors.reverse_cols().subcols(0, wanted).to_owned() })
+}
+
+/// All eigenvalues of a symmetric matrix, ascending, and their eigenvectors, by faer.
+fn decompose(matrix: MatRef<'_, f64>) -> Result<(Diag<f64>, Mat<f64>), NoConvergence> {
+    let n = matrix.nrows();
+    let (mut values, mut vectors) = (Diag::zeros(n), Mat::zeros(n, n));
+    let scratch =
+        self_adjoint_evd_scratch::<f64>(n, ComputeEigenvectors::Yes, ONE_THREAD, Default::default());
+    let mut memory = MemBuffer::new(scratch);
+    let stack = MemStack::new(&mut memory);
+    self_adjoint_evd(matrix, values.as_mut(), Some(vectors.as_mut()), ONE_THREAD, stack, Default::default())
+        .map_err(|_| NoConvergence)?;
+    Ok((values, vectors))
+}
+
+/// The orthonormal factor of a matrix that has no more columns than rows (Householder's QR decomposition, by faer).
+fn orthonormal_factor(mut matrix: Mat<f64>) -> Mat<f64> {
+    let (rows, columns) = matrix.shape();
+    let block = factor::recommended_block_size::<f64>(rows, columns);
+    let mut coefficients = Mat::zeros(block, columns);
+    let scratch = factor::qr_in_place_scratch::<f64>(rows, columns, block, ONE_THREAD, Default::default());
+    let mut memory = MemBuffer::new(scratch);
+    let stack = MemStack::new(&mut memory);
+    factor::qr_in_place(matrix.as_mut(), coefficients.as_mut(), ONE_THREAD, stack, Default::default());
+    let mut orthonormal = Mat::identity(rows, columns);
+    let scratch = householder::apply_block_householder_sequence_on_the_left_in_place_scratch::<f64>(
+        rows, block, columns,
+    );
+    let mut memory = MemBuffer::new(scratch);
+    householder::apply_block_householder_sequence_on_the_left_in_place_with_conj(
+        matrix.as_ref(),
+        coefficients.as_ref(),
+        Conj::No,
+        orthonormal.as_mut(),
+        ONE_THREAD,
+        MemStack::new(&mut memory),
+    );
+    orthonormal
 }
 
 /// The largest eigenvalues by block Lanczos; `None` if they do not converge.
@@ -93,15 +136,15 @@ fn lanczos(matrix: MatRef<'_, f64>, wanted: usize, block: usize) -> Option<Eigen
             images.subcols_mut(held, block).copy_from(&next);
             held += block;
         }
-        let ritz = product(basis.transpose(), images.as_ref()).self_adjoint_eigen(Side::Lower).ok()?;
-        let values: Vec<f64> = ritz.S().column_vector().iter().rev().copied().collect();
+        let (ascending, ritz) = decompose(product(basis.transpose(), images.as_ref()).as_ref()).ok()?;
+        let values: Vec<f64> = ascending.column_vector().iter().rev().copied().collect();
         let magnitude = values[0].abs().max(values[most - 1].abs());
         let small = RESIDUAL * f64::EPSILON * (n as f64).sqrt() * magnitude;
         let found = |vectors: &Mat<f64>, applied: &Mat<f64>| {
             let residual = |k: usize| (applied.col(k) - faer::Scale(values[k]) * vectors.col(k)).norm_l2();
             (0..wanted).all(|k| residual(k) <= small)
         };
-        let combined = ritz.U().reverse_cols().subcols(0, kept);
+        let combined = ritz.reverse_cols().subcols(0, kept);
         let vectors = product(basis.as_ref(), combined);
         let mut applied = product(images.as_ref(), combined);
         if found(&vectors, &applied) || restart.is_multiple_of(TRUSTED_RESTARTS) {
@@ -134,7 +177,7 @@ fn orthonormal(mut vectors: Mat<f64>, basis: MatRef<'_, f64>) -> Mat<f64> {
         if pass > 0 && along_length.powi(2) < f64::EPSILON {
             break;
         }
-        vectors = vectors.qr().compute_thin_Q();
+        vectors = orthonormal_factor(vectors);
         if pass > 0 && along_length < 0.1 {
             break;
         }
@@ -154,7 +197,7 @@ fn product(left: MatRef<'_, f64>, right: MatRef<'_, f64>) -> Mat<f64> {
     }
     parts.into_par_iter().for_each(|(row, part)| {
         let rows = left.subrows(row, part.nrows());
-        matmul(part, Accum::Replace, rows, right, 1.0, Par::Seq);
+        matmul(part, Accum::Replace, rows, right, 1.0, ONE_THREAD);
     });
     product
 }
@@ -226,6 +269,20 @@ mod tests {
         check(&Mat::identity(n, n), 15);
         check(&Mat::zeros(n, n), 15);
         check(&Mat::from_fn(n, n, |_, _| 1.0), 2);
+    }
+
+    /// The high-level calls run on as many threads as a global setting says: one, as the tests are built.
+    #[test]
+    fn on_one_thread_both_decompositions_are_those_of_the_high_level_calls() {
+        let mut rng = stream(2, 1, "spectrum", 0);
+        for (rows, columns) in [(6, 1), (20, 20), (300, 15), (840, 20)] {
+            let matrix = Mat::from_fn(rows, columns, |_, _| rng.random_range(-1.0..1.0));
+            assert_eq!(orthonormal_factor(matrix.clone()), matrix.qr().compute_thin_Q());
+        }
+        let matrix = with_spectrum(&(0..200).map(|k| 1.0 / (1.0 + f64::from(k))).collect::<Vec<f64>>());
+        let expected = matrix.self_adjoint_eigen(faer::Side::Lower).unwrap();
+        let (values, vectors) = decompose(matrix.as_ref()).unwrap();
+        assert_eq!((values.as_ref(), vectors.as_ref()), (expected.S(), expected.U()));
     }
 
     #[test]

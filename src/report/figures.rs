@@ -1,4 +1,4 @@
-//! Write the data of the paper's figures as tidy tables, which [`super::plot`] draws.
+//! Write the data of the paper's figures as tidy tables, which [`plot`] draws.
 //!
 //! [`README`] documents every column, and is written beside the tables.
 
@@ -9,6 +9,8 @@ use serde::Serialize;
 use super::figure_rows::{
     AgentPoint, AgentRow, AngleRow, BoxRow, Counting, CurveRow, MapPoint, MapRow, PartsRow,
 };
+use super::plot::{self, Picture};
+use super::viewer::frames::Frames;
 use crate::analysis::conditions::{BaselineEstimate, Conditions};
 use crate::analysis::statistics::{Estimate, quantile};
 use crate::files::FileError;
@@ -64,13 +66,15 @@ impl<'a> Figures<'a> {
         self.write("fig04-agent", ends.chain(joints).chain(sensors))
     }
 
-    /// Figure 5: joint angles over time, of a trajectory for each p with a sample every `interval`.
-    pub fn angles(&mut self, trajectories: &[(f64, Trajectory)], interval: f64) -> Result<(), FileError> {
-        let rows = trajectories.iter().flat_map(|(coordination, trajectory)| {
-            trajectory.angles.chunks_exact(trajectory.joints).enumerate().flat_map(move |(sample, angles)| {
+    /// Figure 5: joint angles about every 0.2 s, of a trajectory for each p with a sample every `interval` (s).
+    pub fn angles(&mut self, trajectories: &[(f64, &Trajectory)], interval: f64) -> Result<(), FileError> {
+        let every = Frames::every(Some(interval));
+        let rows = trajectories.iter().flat_map(|&(coordination, trajectory)| {
+            let states = trajectory.angles.chunks_exact(trajectory.joints).step_by(every);
+            states.enumerate().flat_map(move |(sample, angles)| {
                 angles.iter().enumerate().map(move |(joint, angles)| AngleRow {
-                    coordination: *coordination,
-                    time_s: round(sample as f64 * interval),
+                    coordination,
+                    time_s: round(sample as f64 * (interval * every as f64)),
                     joint: joint + 1,
                     angle1_rad: round(angles[0]),
                     angle2_rad: round(angles[1]),
@@ -81,8 +85,8 @@ impl<'a> Figures<'a> {
     }
 
     /// Figure 6: a body map of two or three dimensions with the true parts, and with the clusters and joints
-    /// of a draw.
-    pub fn map(&mut self, map: &BodyMap, parts: &[usize], draw: &Sample) -> Result<(), FileError> {
+    /// of a posterior sample.
+    pub fn map(&mut self, map: &BodyMap, parts: &[usize], sample: &Sample) -> Result<(), FileError> {
         let row = |kind, index, group, x: &[f64]| MapRow {
             kind,
             index,
@@ -95,12 +99,12 @@ impl<'a> Figures<'a> {
             let places = map.coordinates.chunks_exact(map.dims).enumerate();
             places.map(|(at, x)| row(MapPoint::Sensor, at, Some(groups[at]), x)).collect()
         };
-        let joints = draw.joints.iter().enumerate().map(|(at, x)| row(MapPoint::Joint, at, None, x));
+        let joints = sample.joints.iter().enumerate().map(|(at, x)| row(MapPoint::Joint, at, None, x));
         let (first, second) = if map.dims == 2 { ("a", "c") } else { ("b", "d") };
         self.write(&format!("fig06{first}-map-{}d", map.dims), sensors(parts))?;
         self.write(
             &format!("fig06{second}-clusters-{}d", map.dims),
-            sensors(&draw.labels).into_iter().chain(joints),
+            sensors(&sample.labels).into_iter().chain(joints),
         )
     }
 
@@ -148,6 +152,13 @@ impl<'a> Figures<'a> {
         self.write("fig11a-ari", curves(&both, |_| true, |conditions, at| conditions.mean_ari(at)))?;
         self.write("fig11b-tree", curves(&both, |_| true, |conditions, at| conditions.tree_rate(&[at])))
     }
+
+    /// The picture of every table in the folder, beside it.
+    pub fn draw(self) -> Result<Vec<Picture>, FileError> {
+        let pictures = plot::render(&self.folder.path().join("figures"))?;
+        self.folder.remember(pictures.iter().map(|picture| format!("figures/{}.svg", picture.name)));
+        Ok(pictures)
+    }
 }
 
 /// A millionth is far below what a picture or a reader of angles and times can see.
@@ -163,7 +174,7 @@ fn histogram(condition: Condition, counting: Counting, conditions: &Conditions) 
     }
     let Estimate { value, n, interval, .. } = conditions.mean_parts(condition);
     let (low, high) = interval.unzip();
-    let mean = value.expect("a condition that was run has draws");
+    let mean = value.expect("a condition that was run has samples");
     let dimension = condition.dimension;
     counts
         .into_iter()

@@ -1,6 +1,6 @@
 //! Write what an experiment found into one page, `report.html`, that needs no other file and no network.
 //!
-//! It is made from the folder alone (claims.csv, manifest.json, figures/, scenes/), so that it can be made again.
+//! What it is made of is also in the folder (claims.csv, manifest.json, figures/, scenes/), so that it can be made again.
 
 use std::path::Path;
 
@@ -11,6 +11,7 @@ use super::claims_table::Row;
 use super::figure_rows::Counting;
 use super::headline::Headline;
 use super::overview::overview;
+use super::plot::Picture;
 use super::ranges;
 use super::viewer;
 use crate::analysis::claims::Verdict;
@@ -18,73 +19,108 @@ use crate::analysis::published::{Figure, figures};
 use crate::files::manifest::{HashedFile, Manifest};
 use crate::files::provenance::Provenance;
 use crate::files::{FileError, read_text, tables, write_text};
-use crate::settings::PAPER;
+use crate::settings::{Described, described};
 
-/// Writes `report.html` into the folder of an experiment.
-///
-/// # Errors
-/// If a file of the experiment is missing or malformed, or the report cannot be written.
-pub fn write(folder: &Path) -> Result<(), FileError> {
-    let rows: Vec<Row> = tables::read_rows(&folder.join("claims.csv"))?;
-    let manifest = Manifest::read(folder)?;
-    let mut shown = Vec::new();
-    for figure in figures() {
-        let path = folder.join("figures").join(&figure.name).with_added_extension("svg");
-        if path.exists() {
-            shown.push((figure, read_text(&path)?));
-        }
-    }
-    let scenes = viewer::stored::read(folder)?;
-    write_text(&folder.join("report.html"), &page(&rows, &shown, &scenes, &manifest).into_string())
+/// What the page of an experiment is made of.
+#[derive(Debug)]
+pub struct Page {
+    /// The claims, as judged.
+    pub rows: Vec<Row>,
+    /// The pictures of the figures.
+    pub pictures: Vec<Picture>,
+    /// What the viewer shows, p rising, each as [`viewer::scene::Scene::data`] gives it.
+    pub scenes: Vec<Value>,
+    /// What was run, with all settings, and the files of the folder.
+    pub manifest: Manifest,
 }
 
-fn page(rows: &[Row], figures: &[(Figure, String)], scenes: &[Value], manifest: &Manifest) -> Markup {
-    let experiment = match manifest.experiment.as_deref() {
-        Some("exp1") => "Experiment 1: body schema estimation",
-        Some("exp2") => "Experiment 2: ratio of motor coordination",
-        _ => "Experiment",
-    };
-    html! {
-        (DOCTYPE)
-        html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                title { "bodyschema: " (experiment) }
-                style { (PreEscaped(include_str!("style.css"))) (PreEscaped(viewer::page::STYLE)) }
+impl Page {
+    /// Reads it from the folder of a finished experiment.
+    ///
+    /// # Errors
+    /// If a file of the experiment is missing or malformed.
+    pub fn read(folder: &Path) -> Result<Self, FileError> {
+        let rows = tables::read_rows(&folder.join("claims.csv"))?;
+        let manifest = Manifest::read(folder)?;
+        let mut pictures = Vec::new();
+        for Figure { name, .. } in figures() {
+            let path = folder.join("figures").join(&name).with_added_extension("svg");
+            if path.exists() {
+                pictures.push(Picture { name, svg: read_text(&path)? });
             }
-            body {
-                header {
-                    h1 { (experiment) }
-                    p { "A replication of Mimura, Hagiwara, Taniguchi and Inamura, " em {
-                        "Bayesian Body Schema Estimation using Tactile Information obtained through Coordinated \
-                         Random Movements"
-                    } " (Advanced Robotics, 2017)." }
-                    @if let Some(headline) = Headline::of(rows) { (headline.in_html()) }
-                    nav {
-                        @for (to, name) in
-                            [("overview", "Overview"), ("viewer", "Body"), ("claims", "Claims"), ("figures", "Figures"), ("settings", "Settings"), ("manifest", "Manifest")]
-                        {
-                            a href={ "#" (to) } { (name) } " "
+        }
+        let scenes = viewer::stored::read(folder)?;
+        Ok(Self { rows, pictures, scenes, manifest })
+    }
+
+    /// Writes `report.html` into the folder.
+    ///
+    /// # Errors
+    /// If it cannot be written.
+    pub fn write(&self, folder: &Path) -> Result<(), FileError> {
+        write_text(&folder.join("report.html"), &self.html().into_string())
+    }
+
+    fn html(&self) -> Markup {
+        let Self { rows, pictures, scenes, manifest } = self;
+        let experiment = match manifest.experiment.as_deref() {
+            Some("exp1") => "Experiment 1: body schema estimation",
+            Some("exp2") => "Experiment 2: ratio of motor coordination",
+            _ => "Experiment",
+        };
+        let figures = figures();
+        let drawn = figures.iter().filter_map(|figure| {
+            let picture = pictures.iter().find(|picture| picture.name == figure.name)?;
+            Some((figure, &picture.svg))
+        });
+        html! {
+            (DOCTYPE)
+            html lang="en" {
+                head {
+                    meta charset="utf-8";
+                    meta name="viewport" content="width=device-width, initial-scale=1";
+                    title { "bodyschema: " (experiment) }
+                    style { (PreEscaped(include_str!("style.css"))) (PreEscaped(viewer::page::STYLE)) }
+                }
+                body {
+                    header {
+                        h1 { (experiment) }
+                        p { "A replication of Mimura, Hagiwara, Taniguchi and Inamura, " em {
+                            "Bayesian Body Schema Estimation using Tactile Information obtained through Coordinated \
+                             Random Movements"
+                        } " (Advanced Robotics, 2017)." }
+                        @if let Some(headline) = Headline::of(rows) { (headline.in_html()) }
+                        nav {
+                            @for (to, name) in SECTIONS { a href={ "#" (to) } { (name) } " " }
                         }
                     }
-                }
-                main {
-                    (overview(rows, &class, &mark))
-                    p { (manifest.summary.as_deref().unwrap_or_default()) }
-                    @if !scenes.is_empty() { (movement_section(scenes)) }
-                    (claims_section(rows))
-                    section id="figures" {
-                        h2 { "Figures" }
-                        @for (figure, svg) in figures { (figure_section(figure, svg, rows)) }
+                    main {
+                        (overview(rows, &class, &mark))
+                        p { (manifest.summary.as_deref().unwrap_or_default()) }
+                        @if !scenes.is_empty() { (movement_section(scenes)) }
+                        (claims_section(rows))
+                        section id="figures" {
+                            h2 { "Figures" }
+                            @for (figure, svg) in drawn { (figure_section(figure, svg, rows)) }
+                        }
+                        (settings_section(manifest.settings.as_ref().unwrap_or(&Value::Null)))
+                        (manifest_section(manifest))
                     }
-                    (settings_section(manifest.settings.as_ref().unwrap_or(&Value::Null)))
-                    (manifest_section(manifest))
                 }
             }
         }
     }
 }
+
+/// Sections of the page, and what they are called in its navigation.
+const SECTIONS: [(&str, &str); 6] = [
+    ("overview", "Overview"),
+    ("viewer", "Body"),
+    ("claims", "Claims"),
+    ("figures", "Figures"),
+    ("settings", "Settings"),
+    ("manifest", "Manifest"),
+];
 
 /// The body that moves. Its estimate is one posterior sample, which is said.
 fn movement_section(scenes: &[Value]) -> Markup {
@@ -185,8 +221,9 @@ fn settings_section(settings: &Value) -> Markup {
                 thead { tr { th scope="col" { "setting" } th scope="col" { "value" } th scope="col" { "source" }
                     th scope="col" { "meaning" } } }
                 tbody {
-                    @for Setting { key, default, source, meaning } in stated_settings() {
+                    @for Described { key, default, source, meaning } in described() {
                         @let value = text(key.split('.').fold(settings, |table, name| &table[name]));
+                        @let default = text(&default);
                         tr {
                             td data-label="setting" { code { (key) } }
                             td data-label="value" {
@@ -201,45 +238,6 @@ fn settings_section(settings: &Value) -> Markup {
             }
         }
     }
-}
-
-/// A line of `reproduce/paper.toml`.
-struct Setting {
-    key: String,
-    default: String,
-    source: String,
-    meaning: String,
-}
-
-/// All settings with what the comments of `reproduce/paper.toml` say of them: `key = value # source: meaning`.
-fn stated_settings() -> Vec<Setting> {
-    let mut section = "";
-    let mut settings: Vec<Setting> = Vec::new();
-    for line in PAPER.lines() {
-        if let Some(name) = line.strip_prefix('[').and_then(|rest| rest.strip_suffix(']')) {
-            section = name;
-        }
-        let Some((assignment, comment)) = line.split_once('#') else { continue };
-        let Some((name, value)) = assignment.split_once('=') else {
-            // A comment that goes on, in a line of its own that is not a heading's.
-            if let Some(Setting { meaning, .. }) = settings.last_mut().filter(|_| line.starts_with(' ')) {
-                *meaning += &format!(" {}", comment.trim());
-            }
-            continue;
-        };
-        let (source, meaning) = comment.split_once(": ").unwrap_or((comment, ""));
-        // The same text for a value as JSON has, in which the manifest keeps it.
-        let table: toml::Table =
-            format!("value = {value}").parse().expect("a line of TOML; a test checks it");
-        let default = serde_json::to_value(&table["value"]).expect("a setting's value is plain");
-        settings.push(Setting {
-            key: format!("{section}.{}", name.trim()),
-            default: text(&default),
-            source: source.trim().to_owned(),
-            meaning: meaning.trim().to_owned(),
-        });
-    }
-    settings
 }
 
 fn manifest_section(manifest: &Manifest) -> Markup {

@@ -4,8 +4,10 @@ mod error;
 mod experiment;
 mod file;
 mod sections;
+mod sources;
 
 pub use self::error::SettingsError;
 pub use self::experiment::{ExperimentSettings, MAX_LISTED};
 pub use self::file::{Base, PAPER, read_toml};
 pub use self::sections::Settings;
+pub use self::sources::{Described, described};

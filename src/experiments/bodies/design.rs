@@ -7,6 +7,7 @@ use toml::Table;
 
 use super::super::error::ExperimentError;
 use crate::files::body::{NamedBody, read_body};
+use crate::files::sha256;
 use crate::settings::Settings;
 
 /// What is simulated, and what is recorded of it.
@@ -45,6 +46,8 @@ pub struct Recording {
 pub struct StudyBody {
     /// The name of its file.
     pub name: String,
+    /// The hash of this file.
+    pub sha256: String,
     /// The body.
     pub body: NamedBody,
 }
@@ -86,7 +89,8 @@ impl Design {
         let folder = path.parent().unwrap_or(Path::new(""));
         let read = |file: &PathBuf| {
             let name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-            Ok(StudyBody { name, body: read_body(&folder.join(file))? })
+            let path = folder.join(file);
+            Ok(StudyBody { name, sha256: sha256(&path)?, body: read_body(&path)? })
         };
         self.bodies.iter().map(read).collect()
     }

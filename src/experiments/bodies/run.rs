@@ -22,7 +22,7 @@ const EDGES: &str = "edges.csv";
 const COPY: &str = "design.toml";
 const PAGE: &str = "bodies.md";
 
-/// Runs the study, and writes into `out`: recordings.csv, edges.csv, design.toml and manifest.json, and, by [`redraw`], bodies.md and
+/// Runs the study, and writes into `out`: recordings.csv, edges.csv, design.toml, manifest.json, bodies.md and
 /// figures/bodies.svg.
 ///
 /// A study that was interrupted goes on from the movements that it finished, and so does one of more movements: what each gave
@@ -43,10 +43,10 @@ pub fn study(design: &Design, text: &str, path: &Path, out: &Path) -> Result<(),
     {
         settings.check_times(body.body.agent.sites.len()).map_err(crate::settings::SettingsError::from)?;
     }
-    // What a movement gives does not hang on how many there are: a study of more goes on from what one of fewer left.
-    // It hangs on the bodies as they were read: a file that changes makes another study.
-    let agents: Vec<String> = bodies.iter().map(|body| format!("{:?}", body.body.agent)).collect();
-    let checkpoints = Checkpoints::new(out, &(Design { movements: 0, ..design.clone() }, agents));
+    // What a simulation gives does not depend on how many there are: a study of more goes on from what one of fewer left.
+    // It depends on the bodies: a file that changes makes another study.
+    let hashes: Vec<&str> = bodies.iter().map(|body| body.sha256.as_str()).collect();
+    let checkpoints = Checkpoints::new(out, &(Design { movements: 0, ..design.clone() }, hashes));
     let each = design.recordings.len() as u64 + 1;
     let count = bodies.len() * settings.len() * design.movements;
     let bar = progress(each * count as u64, format!("{count} simulations"));
@@ -78,14 +78,16 @@ pub fn study(design: &Design, text: &str, path: &Path, out: &Path) -> Result<(),
     bar.finish_and_clear();
     // By body, then by p, then by movement.
     found.sort_by_key(|(place, _)| *place);
-    let found: Vec<Found> = found.into_iter().map(|(_, found)| found).collect();
-    let rows: Vec<&Row> = found.iter().flat_map(|found| &found.rows).collect();
-    let edges: Vec<&EdgeRow> = found.iter().flat_map(|found| &found.edges).collect();
+    let (mut rows, mut edges) = (Vec::new(), Vec::new());
+    for (_, found) in found {
+        rows.extend(found.rows);
+        edges.extend(found.edges);
+    }
     folder.write_rows(ROWS, &rows)?;
     folder.write_rows(EDGES, &edges)?;
     folder.write_text(COPY, text)?;
     folder.write_manifest(Manifest::of_study("bodies", design.seed))?;
-    redraw(out)
+    draw(&Page { design, rows: &rows, edges: &edges }, out)
 }
 
 /// Whether a folder holds a finished study of bodies.
@@ -102,7 +104,11 @@ pub fn redraw(folder: &Path) -> Result<(), ExperimentError> {
     let design = Design::parse(&read_text(&path)?, &path)?;
     let rows: Vec<Row> = read_rows(&folder.join(ROWS))?;
     let edges: Vec<EdgeRow> = read_rows(&folder.join(EDGES))?;
-    let page = Page { design: &design, rows: &rows, edges: &edges };
+    draw(&Page { design: &design, rows: &rows, edges: &edges }, folder)
+}
+
+/// Writes the page and the picture of a study.
+fn draw(page: &Page, folder: &Path) -> Result<(), ExperimentError> {
     write_text(&folder.join(PAGE), &page.text())?;
     let (columns, lines) = page.picture();
     let picture = plot::effects::render(&columns, &lines, false);

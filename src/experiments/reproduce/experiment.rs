@@ -9,7 +9,8 @@ use super::super::batch::{Batch, Found, Outcome};
 use super::super::error::ExperimentError;
 use super::super::progress::progress;
 use super::super::task::{Keep, Task};
-use super::reading::OtherInterpretation;
+use super::beginnings::Beginnings;
+use super::interpretation::OtherInterpretation;
 use super::run::{Run, preamble};
 use super::scenes;
 use crate::analysis::claims::{Judged, judge};
@@ -23,16 +24,16 @@ use crate::files::manifest::{HashedFile, Manifest, write_circumstances};
 use crate::files::provenance::Provenance;
 use crate::files::result_folder::ResultFolder;
 use crate::files::ro_crate::RO_CRATE;
-use crate::numerics::rng::stream;
 use crate::pipeline::{BaselineRecord, Condition, Record};
 use crate::report::claims_table::{Row, illustrated, rows};
 use crate::report::figures::Figures;
 use crate::report::headline::{Headline, claims_page};
-use crate::report::{page, plot};
+use crate::report::page::Page;
+use crate::report::plot::Picture;
 use crate::settings::Settings;
 use crate::stages::agent::Agent;
 use crate::stages::schema::Model;
-use crate::stages::simulate::{Resolution, Trajectory, simulate};
+use crate::stages::simulate::Resolution;
 
 /// A finished experiment.
 #[derive(Debug)]
@@ -61,17 +62,18 @@ pub fn reproduce(run: &Run) -> Result<Finished, ExperimentError> {
     let all = other.as_ref().map_or_else(|| tasks.clone(), |other| other.behind(&tasks));
     let bar = progress(Batch::length(&all), "movement".to_owned());
     let batch = Batch { out: run.out, checkpoints: &checkpoints, bar: &bar };
-    let movements = movements(run)?;
+    let mut beginnings = Beginnings::of_other_coordinations(run)?;
     let (mut found, by_other) = apart(&all, batch.one_by_one(&all)?)?;
     bar.finish_and_clear();
+    beginnings.add(&tasks, &mut found)?;
     for kept in found.iter_mut().filter_map(|found| found.kept.as_mut()) {
         folder.remember(std::mem::take(&mut kept.files));
     }
 
     let (records, baselines) = write_samples(run, &found, &mut folder)?;
     let (mut judged, evidence) = judge_all(run.experiment, run.settings, records, &baselines);
-    write_figures(run, &tasks, &found, &movements, &evidence, &mut folder)?;
-    scenes::write(run, &tasks, &found, &mut folder)?;
+    let pictures = write_figures(run, &tasks, &found, &beginnings, &evidence, &mut folder)?;
+    let scenes = scenes::write(run, &tasks, &found, &beginnings, &mut folder)?;
     let resolution =
         found.iter().map(|found| found.resolution).fold(Resolution::default(), Resolution::worse);
     let mut preamble = preamble(run, resolution);
@@ -85,11 +87,12 @@ pub fn reproduce(run: &Run) -> Result<Finished, ExperimentError> {
     folder.write_rows("claims.csv", &rows)?;
     folder.write_text("claims.md", &claims_page(&preamble, &rows))?;
     folder.write_text("settings.toml", &settings_file(run))?;
-    folder.write_manifest(manifest(run, &preamble, &tasks, &found, &rows)?)?;
-    page::write(run.out)?;
+    let manifest = folder.write_manifest(manifest(run, &preamble, &tasks, &found, &rows)?)?;
+    let page = Page { rows, pictures, scenes, manifest };
+    page.write(run.out)?;
     write_circumstances(run.out, begun)?;
     checkpoints.clear()?;
-    Ok(Finished { preamble, judged, rows })
+    Ok(Finished { preamble, judged, rows: page.rows })
 }
 
 /// Files of an earlier run that must not stand beside those of this one while it works.
@@ -147,7 +150,7 @@ fn tasks(run: &Run) -> Vec<Task> {
     }
 }
 
-/// What the tasks of the run found, and what became of those of the other reading, which alone may fail.
+/// What the tasks of the run found, and what became of those of the other interpretation, which alone may fail.
 fn apart(all: &[Task], outcomes: Vec<Outcome>) -> Result<(Vec<Found>, Vec<Outcome>), ExperimentError> {
     let (run, other): (Vec<_>, Vec<_>) =
         all.iter().zip(outcomes).partition(|(task, _)| task.keep != Keep::Nothing);
@@ -202,37 +205,37 @@ fn write_figures(
     run: &Run,
     tasks: &[Task],
     found: &[Found],
-    movements: &Option<Movements>,
+    beginnings: &Beginnings,
     evidence: &Evidence,
     folder: &mut ResultFolder,
-) -> Result<(), FileError> {
+) -> Result<Vec<Picture>, FileError> {
     let mut figures = Figures::new(folder)?;
-    if let Some(Movements { agent, trajectories, interval }) = movements {
-        figures.agent(agent, &trajectories[0].1.poses[..agent.parts.len()])?;
-        figures.angles(trajectories, *interval)?;
-    }
     if run.experiment == Experiment::Exp1 {
-        for (condition, draw) in tasks[0].conditions.iter().zip(&found[0].best) {
+        let Settings { agent, skin, sense, experiment, .. } = run.settings;
+        let agent = Agent::new(agent, skin);
+        let trajectories: Vec<_> = experiment.coordinations.iter().map(|&p| (p, beginnings.at(p))).collect();
+        figures.agent(&agent, &trajectories[0].1.poses[..agent.parts.len()])?;
+        figures.angles(&trajectories, sense.interval)?;
+        for (condition, sample) in tasks[0].conditions.iter().zip(&found[0].best) {
             if let Some(body) = &found[0].body
                 && let Some(maps) = &body.maps
                 && condition.model == Model::DpgmmLj
                 && (2..=3).contains(&condition.dimension)
             {
-                figures.map(&maps.in_dims(condition.dimension), &body.truth.labels, draw)?;
+                figures.map(&maps.in_dims(condition.dimension), &body.truth.labels, sample)?;
             }
         }
     }
-    write_curves(run.experiment, evidence, folder)
+    write_curves(run.experiment, evidence, figures)
 }
 
 /// Writes the tables of the figures that samples and clusterings give, and the picture of every table in the folder.
 pub fn write_curves(
     experiment: Experiment,
     evidence: &Evidence,
-    folder: &mut ResultFolder,
-) -> Result<(), FileError> {
+    mut figures: Figures,
+) -> Result<Vec<Picture>, FileError> {
     let best = evidence.conditions.best();
-    let mut figures = Figures::new(folder)?;
     match experiment {
         Experiment::Exp1 => {
             figures.baselines(&evidence.baselines)?;
@@ -240,40 +243,7 @@ pub fn write_curves(
         }
         Experiment::Exp2 => figures.by_coordination(&evidence.conditions, &best)?,
     }
-    let pictures = plot::render(&folder.path().join("figures"))?;
-    folder.remember(pictures.into_iter().map(|name| format!("figures/{name}")));
-    Ok(())
-}
-
-/// What figures 4 and 5 show: the agent, and how it moves at first at each p of experiment 2.
-struct Movements {
-    agent: Agent,
-    trajectories: Vec<(f64, Trajectory)>,
-    interval: f64,
-}
-
-/// The movements that experiment 1 shows.
-fn movements(run: &Run) -> Result<Option<Movements>, ExperimentError> {
-    // Some twenty epochs, s, and a sample every so often, s.
-    const SHOWN: f64 = 100.0;
-    const EVERY: f64 = 0.2;
-    if run.experiment == Experiment::Exp2 {
-        return Ok(None);
-    }
-    let Settings { agent, skin, motion, physics, sense, experiment, .. } = run.settings;
-    let agent = Agent::new(agent, skin);
-    let interval = sense.interval * (EVERY / sense.interval).round().max(1.0);
-    let (mut motion, mut physics) = (motion.clone(), physics.clone());
-    physics.duration = physics.duration.min(SHOWN.max(interval));
-    let mut trajectories = Vec::new();
-    for &coordination in &experiment.coordinations {
-        motion.coordination = coordination;
-        let mut rng = stream(experiment.seed, 1, "motion", 0);
-        let trajectory = simulate(&agent, &motion, &physics, interval, &mut rng, &|| ())
-            .map_err(|error| ExperimentError::Stage(error.to_string()))?;
-        trajectories.push((coordination, trajectory));
-    }
-    Ok(Some(Movements { agent, trajectories, interval }))
+    figures.draw()
 }
 
 /// All settings of a run, with which anyone can repeat it.

@@ -1,7 +1,8 @@
-//! Reproduce an experiment of the paper: a folder with its draws, figures, verdicts, manifest and report.
+//! Reproduce an experiment of the paper: a folder with its posterior samples, figures, verdicts, manifest and report.
 
+mod beginnings;
 mod experiment;
-mod reading;
+mod interpretation;
 mod rejudge;
 mod run;
 mod scenes;

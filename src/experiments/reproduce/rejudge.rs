@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use super::super::error::ExperimentError;
-use super::experiment::{Finished, judge_all, write_curves};
-use super::reading::other_than;
+use super::experiment::{judge_all, write_curves};
+use super::interpretation::other_than;
 use crate::analysis::claims::headline;
 use crate::analysis::conditions::Conditions;
 use crate::analysis::measure::Evidence;
@@ -14,14 +14,17 @@ use crate::files::provenance::Provenance;
 use crate::files::result_folder::ResultFolder;
 use crate::files::{FileError, tables};
 use crate::report::claims_table::{illustrated, rows};
+use crate::report::figures::Figures;
 use crate::report::headline::{Headline, claims_page};
+use crate::report::plot::Picture;
 use crate::settings::Settings;
 
-/// Writes claims.csv, claims.md and the tables and pictures of the figures again, and the manifest with their hashes; `None` where the folder does not have the samples.
+/// Writes claims.csv, claims.md and the tables and pictures of the figures again, and the manifest with their hashes. Returns the
+/// pictures; `None` where the folder does not have the samples.
 ///
 /// # Errors
 /// If a file of the experiment is missing or malformed, or one cannot be written.
-pub fn rejudge(path: &Path) -> Result<Option<Finished>, ExperimentError> {
+pub fn rejudge(path: &Path) -> Result<Option<Vec<Picture>>, ExperimentError> {
     let samples = path.join("samples.csv");
     if !samples.is_file() {
         return Ok(None);
@@ -59,10 +62,10 @@ pub fn rejudge(path: &Path) -> Result<Option<Finished>, ExperimentError> {
     }
     let mut folder = ResultFolder::new(path);
     folder.remember(manifest.outputs.iter().map(|output| output.file.clone()));
-    write_curves(experiment, &evidence, &mut folder)?;
+    let pictures = write_curves(experiment, &evidence, Figures::new(&mut folder)?)?;
     folder.write_rows("claims.csv", &rows)?;
     folder.write_text("claims.md", &claims_page(&preamble, &rows))?;
     let headline = Headline::of(&rows).map(|headline| headline.sentence).into_iter().collect();
-    folder.write_manifest(Manifest { summary: Some(preamble.clone()), headline, ..manifest })?;
-    Ok(Some(Finished { preamble, judged, rows }))
+    folder.write_manifest(Manifest { summary: Some(preamble), headline, ..manifest })?;
+    Ok(Some(pictures))
 }

@@ -15,4 +15,4 @@ pub mod specifications;
 mod values;
 
 pub use self::canvas::PlotError;
-pub use self::pictures::render;
+pub use self::pictures::{Picture, render};

@@ -10,11 +10,20 @@ use crate::analysis::published::{Mark, figures};
 use crate::files::tables::read_rows;
 use crate::files::{FileError, write_text};
 
-/// A table and the value that its picture marks, if any, to the picture.
-type Picture = fn(&Path, Option<&Mark>) -> Result<String, FileError>;
+/// A figure that was drawn.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Picture {
+    /// Name of the figure.
+    pub name: String,
+    /// The picture, as SVG.
+    pub svg: String,
+}
+
+/// A table and the value that its picture marks, if any, to the picture as SVG.
+type Draw = fn(&Path, Option<&Mark>) -> Result<String, FileError>;
 
 /// Figures by name, in their order.
-const FIGURES: [(&str, Picture); 14] = [
+const FIGURES: [(&str, Draw); 14] = [
     ("fig04-agent", |csv, _| picture(csv, agent::render)),
     ("fig05-angles", |csv, _| picture(csv, angles::render)),
     ("fig06a-map-2d", |csv, _| picture(csv, |rows| map::render(rows, map::Grouping::Parts))),
@@ -35,22 +44,21 @@ const FIGURES: [(&str, Picture); 14] = [
     }),
 ];
 
-/// Writes NAME.svg for every figure NAME whose NAME.csv is in `folder`, and returns the names of what it wrote.
+/// Writes NAME.svg for every figure NAME whose NAME.csv is in `folder`, and returns what it wrote.
 ///
 /// # Errors
 /// If a table is not that of its figure, or a picture cannot be written. Each picture appears whole or not at all.
-pub fn render(folder: &Path) -> Result<Vec<String>, FileError> {
+pub fn render(folder: &Path) -> Result<Vec<Picture>, FileError> {
     let published = figures();
     let mut written = Vec::new();
-    for (name, picture) in FIGURES {
+    for (name, draw) in FIGURES {
         let csv = folder.join(format!("{name}.csv"));
         if csv.exists() {
             let mark =
                 published.iter().find(|figure| figure.name == name).and_then(|figure| figure.mark.as_ref());
-            let svg = picture(&csv, mark)?;
-            let name = format!("{name}.svg");
-            write_text(&folder.join(&name), &svg)?;
-            written.push(name);
+            let svg = draw(&csv, mark)?;
+            write_text(&folder.join(format!("{name}.svg")), &svg)?;
+            written.push(Picture { name: name.to_owned(), svg });
         }
     }
     Ok(written)

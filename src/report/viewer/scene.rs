@@ -63,8 +63,8 @@ impl Parts {
         Self { of: labels.iter().copied().map(Some).collect(), tree: tree.iter().map(edge).collect() }
     }
 
-    /// Those of one draw, which says nothing of how sure an edge is.
-    pub fn of_draw(Sample { labels, tree, .. }: &Sample) -> Self {
+    /// Those of one posterior sample, which says nothing of how sure an edge is.
+    pub fn of_sample(Sample { labels, tree, .. }: &Sample) -> Self {
         let edge = |&Edge { child, parent }: &Edge| TreeEdge { child, parent, support: None };
         Self { of: labels.iter().copied().map(Some).collect(), tree: tree.iter().map(edge).collect() }
     }

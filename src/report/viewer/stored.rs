@@ -5,7 +5,6 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use super::scene::Scene;
 use crate::files::{FileError, read_text};
 
 /// The folder of scenes within that of results.
@@ -16,9 +15,9 @@ pub fn name(coordination: f64) -> String {
     format!("{FOLDER}/p-{coordination}.json")
 }
 
-/// What the file of a scene holds.
-pub fn text(scene: &Scene) -> String {
-    format!("{}\n", scene.data())
+/// What the file of a scene holds, which [`super::scene::Scene::data`] gives.
+pub fn text(data: &Value) -> String {
+    format!("{data}\n")
 }
 
 /// Names of the files of all scenes of a folder of results, p rising.

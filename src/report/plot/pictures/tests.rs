@@ -129,21 +129,18 @@ fn every_figure_with_a_table_is_rendered_and_always_the_same() {
     let folder = tempfile::tempdir().unwrap();
     assert!(render(folder.path()).unwrap().is_empty());
     tables(folder.path());
-    let names: Vec<String> = FIGURES.iter().map(|(name, _)| format!("{name}.svg")).collect();
-    let read = || names.iter().map(|name| std::fs::read_to_string(folder.path().join(name)).unwrap());
-    assert_eq!(render(folder.path()).unwrap(), names);
-    let first: Vec<String> = read().collect();
-    assert_eq!(render(folder.path()).unwrap(), names);
-    assert!(read().eq(first.iter().cloned()));
-
-    for (name, svg) in names.iter().zip(&first) {
+    let pictures = render(folder.path()).unwrap();
+    assert!(pictures.iter().map(|picture| picture.name.as_str()).eq(FIGURES.map(|(name, _)| name)));
+    assert_eq!(render(folder.path()).unwrap(), pictures);
+    for Picture { name, svg } in &pictures {
+        assert_eq!(std::fs::read_to_string(folder.path().join(format!("{name}.svg"))).unwrap(), *svg);
         assert!(
             svg.starts_with("<svg width=\"520\" height=\"") && svg.trim_end().ends_with("</svg>"),
             "{name}"
         );
         assert!(!svg.contains("NaN") && !svg.contains("inf"), "{name}");
     }
-    let of = |name: &str| &first[names.iter().position(|known| known.starts_with(name)).unwrap()];
+    let of = |name: &str| &pictures.iter().find(|picture| picture.name.starts_with(name)).unwrap().svg;
     // All sensors of the body, those of the close-up, three keys, and a joint with its outline.
     assert_eq!(count(of("fig04"), "<circle"), 24 + 12 + 2 + 2 + 2);
     assert_eq!(count(of("fig05"), "\np = "), 3);

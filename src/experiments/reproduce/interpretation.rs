@@ -1,4 +1,4 @@
-//! Sample the headline by the other reading of the paper as well, on the same bodies.
+//! Infer the headline by the other interpretation of the paper as well, on the same simulations.
 
 use super::super::batch::Outcome;
 use super::super::task::{Keep, Task};
@@ -17,10 +17,10 @@ const AUTHORS: &str = include_str!("../../../reproduce/authors.toml");
 /// `reproduce/equations.toml`.
 const EQUATIONS: &str = include_str!("../../../reproduce/equations.toml");
 
-/// The headline by the other reading of the paper. It does not count: where it fails, its claim says why, and the run goes
+/// The headline by the other interpretation of the paper. It does not count: where it fails, its claim says why, and the run goes
 /// on.
 pub struct OtherInterpretation {
-    /// The reading.
+    /// The interpretation.
     sampler: Sampler,
     /// One task for each simulation.
     tasks: Vec<Task>,
@@ -29,7 +29,7 @@ pub struct OtherInterpretation {
 }
 
 impl OtherInterpretation {
-    /// The headline's condition by the reading that the run does not follow; `None` if the run has not this condition.
+    /// The headline's condition by the interpretation that the run does not follow; `None` if the run has not this condition.
     pub fn of(run: &Run, tasks: &[Task]) -> Option<Self> {
         let condition = condition();
         let same: Vec<&Task> = tasks.iter().filter(|task| task.conditions.contains(&condition)).collect();
@@ -51,7 +51,7 @@ impl OtherInterpretation {
         (!same.is_empty()).then_some(Self { sampler, tasks, problem })
     }
 
-    /// The tasks of the run, each followed by that of this reading which shares its movement.
+    /// The tasks of the run, each followed by that of this interpretation which shares its movement.
     pub fn behind(&self, tasks: &[Task]) -> Vec<Task> {
         let shares = |task: &Task, other: &Task| {
             let p = |task: &Task| task.settings.motion.coordination;
@@ -61,14 +61,14 @@ impl OtherInterpretation {
         tasks.iter().flat_map(|task| std::iter::once(task.clone()).chain(own(task))).collect()
     }
 
-    /// How the headline is drawn, in words.
+    /// By how many chains the headline is inferred, in words.
     pub fn in_words(&self) -> String {
         let Some(Task { settings, .. }) = self.tasks.first() else { return String::new() };
         let (chains, sweeps) = (settings.schema.chains, settings.schema.sweeps);
         format!(" For the headline, the {} uses {chains} chains of {sweeps} sweeps.", self.sampler.in_words())
     }
 
-    /// All its draws, and the headline by them.
+    /// All its posterior samples, and the headline by them.
     pub fn judge(&self, run: &Run, outcomes: Vec<Outcome>) -> (Vec<Record>, Judged) {
         let mut problem = self.problem.clone();
         let mut records = Vec::new();
@@ -107,7 +107,7 @@ fn condition() -> Condition {
     Condition { model: Model::DpgmmLj, coordination: at.coordinations[0], dimension: at.dimensions[0] }
 }
 
-/// The same body and movement, mapped and inferred from by another reading, with as many draws.
+/// The same simulation, mapped and inferred from by another interpretation, with as many posterior samples.
 fn by(sampler: Sampler, settings: &Settings) -> Result<Settings, SettingsError> {
     let mut other = match sampler {
         Sampler::AuthorsCode => settings.with(AUTHORS, "reproduce/authors.toml"),
@@ -123,7 +123,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn each_reading_has_the_other() {
+    fn each_interpretation_has_the_other() {
         let mut equations = Settings::paper().with(EQUATIONS, "equations").unwrap();
         // Beyond what a number in a settings file can be.
         equations.experiment.seed = u64::MAX;

@@ -1,0 +1,202 @@
+//! Draw simulations with replacement, and tell from what a statistic is of each resample how sure it is (bootstrap).
+//!
+//! Observations of one simulation share its body map and are not independent, so the simulation is the unit that is drawn.
+
+use rand::{Rng, RngExt};
+use rayon::prelude::*;
+use statrs::distribution::{ContinuousCDF, Normal};
+
+use super::statistics::{Estimate, quantile, spread, student};
+
+/// Draws as many of `count` units as there are, with replacement.
+fn resample(count: usize, rng: &mut impl Rng) -> Vec<usize> {
+    (0..count).map(|_| rng.random_range(0..count)).collect()
+}
+
+/// Draws clusters of these sizes, and of each that is drawn as many of its members as it has: the cluster and the member in it.
+fn resample_clusters(sizes: &[usize], rng: &mut impl Rng) -> Vec<(usize, usize)> {
+    let mut drawn = Vec::new();
+    for _ in sizes {
+        let cluster = rng.random_range(0..sizes.len());
+        drawn.extend(resample(sizes[cluster], rng).into_iter().map(|member| (cluster, member)));
+    }
+    drawn
+}
+
+/// The statistic of each of `count` resamples of clusters and of their members, ascending; see [`resample_clusters`].
+pub fn of_clusters(
+    sizes: &[usize],
+    count: usize,
+    rng: &mut impl Rng,
+    statistic: impl Fn(&[(usize, usize)]) -> f64,
+) -> Vec<f64> {
+    let mut values: Vec<f64> = (0..count).map(|_| statistic(&resample_clusters(sizes, rng))).collect();
+    values.sort_by(f64::total_cmp);
+    values
+}
+
+/// Resamples of simulations, the same for every estimate of an experiment.
+#[derive(Debug, Clone)]
+pub struct Resamples {
+    /// The simulations that were drawn, counted from 0; a row a resample.
+    drawn: Vec<Vec<usize>>,
+}
+
+impl Resamples {
+    /// `count` resamples of so many simulations; none of one simulation, which is the same however often it is drawn.
+    pub fn new(simulations: usize, count: usize, rng: &mut impl Rng) -> Self {
+        let count = if simulations > 1 { count } else { 0 };
+        Self { drawn: (0..count).map(|_| resample(simulations, rng)).collect() }
+    }
+
+    /// The statistic of each resample, ascending, without those that have none.
+    pub fn values(&self, statistic: impl Fn(&[usize]) -> Option<f64> + Sync) -> Vec<f64> {
+        let mut values: Vec<f64> = self.drawn.par_iter().filter_map(|drawn| statistic(drawn)).collect();
+        values.sort_by(f64::total_cmp);
+        values
+    }
+
+    /// `pooled`, an estimate over the observations of all simulations, with what the simulations differ by:
+    /// `groups` holds the sum and the number of observations of each.
+    ///
+    /// The interval is the expanded percentile interval of Hesterberg (2015), which makes up for what a
+    /// percentile interval lacks with few simulations; and it is never narrower than the one of `pooled`,
+    /// which would hold if all observations were independent.
+    ///
+    /// # Panics
+    /// If there are not as many groups as simulations.
+    pub fn clustered(&self, pooled: Estimate, groups: &[(f64, usize)]) -> Estimate {
+        let values: Vec<f64> =
+            groups.iter().filter(|group| group.1 > 0).map(|group| group.0 / group.1 as f64).collect();
+        let simulations = values.len();
+        // Samples of simulations of their own are independent: their interval stands.
+        let alone = simulations < 2 || groups.iter().all(|group| group.1 < 2);
+        let Some((low, high)) = pooled.interval.filter(|_| !alone) else {
+            return Estimate { simulations, ..pooled };
+        };
+        let means = self.values(|drawn| mean_of(drawn, groups));
+        let (least, most) = percentile_interval(&means, simulations);
+        Estimate {
+            interval: Some((low.min(least), high.max(most))),
+            simulations,
+            spread: spread(&values),
+            ..pooled
+        }
+    }
+
+    /// The difference of two estimates over the same simulations, the second minus the first, each with the sum and
+    /// the number of observations of each simulation.
+    ///
+    /// Simulations are drawn in pairs, since they share what the two have in common: the interval is the expanded
+    /// percentile interval of the differences. It is never narrower than that of two estimates whose observations are all
+    /// independent, by Zou & Donner (2008) from the intervals given. `None` if either has no value.
+    pub fn difference(
+        &self,
+        (first, groups): (Estimate, &[(f64, usize)]),
+        (second, others): (Estimate, &[(f64, usize)]),
+    ) -> Estimate {
+        let (Some(a), Some(b)) = (first.value, second.value) else { return Estimate::default() };
+        let simulations = groups.iter().zip(others).filter(|(one, other)| one.1 > 0 && other.1 > 0).count();
+        let difference = Estimate { value: Some(b - a), n: second.n, simulations, ..Estimate::default() };
+        let Some(((a_low, a_high), (b_low, b_high))) = first.interval.zip(second.interval) else {
+            return difference;
+        };
+        let (mut low, mut high) =
+            (b - a - (b - b_low).hypot(a_high - a), b - a + (b_high - b).hypot(a - a_low));
+        if simulations > 1 {
+            let differences = self.values(|drawn| Some(mean_of(drawn, others)? - mean_of(drawn, groups)?));
+            let (least, most) = percentile_interval(&differences, simulations);
+            (low, high) = (low.min(least), high.max(most));
+        }
+        Estimate { interval: Some((low, high)), ..difference }
+    }
+}
+
+/// The mean over the observations of the simulations that were drawn; `None` without an observation.
+fn mean_of(drawn: &[usize], groups: &[(f64, usize)]) -> Option<f64> {
+    assert_eq!(drawn.len(), groups.len(), "a group for each simulation");
+    let mut times = vec![0.0; groups.len()];
+    drawn.iter().for_each(|&simulation| times[simulation] += 1.0);
+    let (sum, n) = times
+        .iter()
+        .zip(groups)
+        .fold((0.0, 0.0), |(sum, n), (times, group)| (sum + times * group.0, n + times * group.1 as f64));
+    (n > 0.0).then(|| sum / n)
+}
+
+/// The expanded percentile interval (Hesterberg 2015) of the `sorted` values of resamples of so many simulations, more
+/// than one.
+pub fn percentile_interval(sorted: &[f64], simulations: usize) -> (f64, f64) {
+    let widened = (simulations as f64 / (simulations - 1) as f64).sqrt() * student(simulations);
+    let tail = Normal::standard().cdf(-widened);
+    (quantile(sorted, tail), quantile(sorted, 1.0 - tail))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::statistics::{rate, wilson};
+    use super::*;
+    use crate::numerics::rng::stream;
+
+    #[test]
+    fn simulations_that_differ_widen_the_interval_and_equal_ones_do_not_narrow_it() {
+        let resamples = Resamples::new(5, 10_000, &mut stream(1, 1, "bootstrap", 0));
+        let alike = [(9.0, 10); 5];
+        let pooled = rate(45, 50);
+        let same = resamples.clustered(pooled, &alike);
+        assert_eq!((same.interval, same.spread, same.simulations), (pooled.interval, Some((0.9, 0.9)), 5));
+        let unlike =
+            resamples.clustered(pooled, &[(10.0, 10), (10.0, 10), (10.0, 10), (10.0, 10), (5.0, 10)]);
+        let (low, high) = unlike.interval.unwrap();
+        assert!(low < 0.7 && high == 1.0, "{low} {high}");
+        assert_eq!(unlike.spread, Some((0.5, 1.0)));
+        // Four simulations without an eligible observation leave one, whose observations are all there is.
+        let alone = resamples.clustered(rate(9, 10), &[(9.0, 10), (0.0, 0), (0.0, 0), (0.0, 0), (0.0, 0)]);
+        assert_eq!((alone.interval, alone.spread, alone.simulations), (rate(9, 10).interval, None, 1));
+        let single = resamples.clustered(rate(3, 5), &[(1.0, 1), (0.0, 1), (1.0, 1), (1.0, 1), (0.0, 1)]);
+        assert_eq!((single.interval, single.spread, single.simulations), (rate(3, 5).interval, None, 5));
+    }
+
+    #[test]
+    fn a_difference_is_paired_and_never_narrower_than_its_samples_allow() {
+        let resamples = Resamples::new(5, 10_000, &mut stream(1, 1, "bootstrap", 0));
+        let groups = |rates: [f64; 5]| rates.map(|rate| (10.0 * rate, 10));
+        let of = |groups: &[(f64, usize)]| rate(groups.iter().map(|group| group.0).sum::<f64>() as usize, 50);
+        let between = |first: [f64; 5], second: [f64; 5]| {
+            let (first, second) = (groups(first), groups(second));
+            let found = resamples.difference((of(&first), &first), (of(&second), &second));
+            (found.value.unwrap(), found.interval.unwrap())
+        };
+        // Bodies that differ much from each other, and all by the same between the two.
+        let (paired, (low, high)) = between([0.0, 0.2, 0.5, 0.7, 0.9], [0.1, 0.3, 0.6, 0.8, 1.0]);
+        let (_, (unpaired_low, _)) = between([0.0, 0.2, 0.5, 0.7, 0.9], [1.0, 0.8, 0.6, 0.3, 0.1]);
+        assert!((paired - 0.1).abs() < 1e-12 && low < 0.1 && high > 0.1);
+        assert!(unpaired_low < low - 0.3, "{unpaired_low} {low}");
+        // Nothing differs in any simulation, and yet fifty observations of each know no more than this.
+        let (none, (low, high)) = between([0.0; 5], [0.0; 5]);
+        assert_eq!(none, 0.0);
+        assert!((low + high).abs() < 1e-12 && (high - wilson(0.0, 50.0).1).abs() < 1e-12);
+        let lacking = resamples.difference((rate(0, 0), &[(0.0, 0); 5]), (rate(1, 5), &[(1.0, 1); 5]));
+        assert_eq!(lacking, Estimate::default());
+    }
+
+    #[test]
+    fn the_interval_over_simulations_covers_the_truth_where_the_pooled_one_does_not() {
+        // Bodies whose rate is uniform over [0, 1]; five of them, with 40 chains each.
+        let mut rng = stream(1, 1, "coverage", 0);
+        let resamples = Resamples::new(5, 10_000, &mut rng);
+        let (mut clustered, mut pooled, runs) = (0, 0, 400);
+        for _ in 0..runs {
+            let groups: Vec<(f64, usize)> = (0..5).map(|_| (40.0 * rng.random::<f64>(), 40)).collect();
+            let plain = rate(groups.iter().map(|group| group.0).sum::<f64>().round() as usize, 200);
+            let covers = |estimate: Estimate| {
+                let (low, high) = estimate.interval.unwrap();
+                usize::from((low..=high).contains(&0.5))
+            };
+            pooled += covers(plain);
+            clustered += covers(resamples.clustered(plain, &groups));
+        }
+        assert!(clustered >= runs * 90 / 100, "{clustered} of {runs}");
+        assert!(pooled <= runs * 60 / 100, "the twin that pools: {pooled} of {runs}");
+    }
+}

@@ -1,0 +1,98 @@
+//! Say of each setting where its default is from, and what it means: `reproduce/sources.toml`.
+
+use serde::Deserialize;
+use serde_json::Value;
+
+use super::sections::Settings;
+
+/// `reproduce/sources.toml`: a table for each setting, in the sections of `reproduce/paper.toml`.
+const SOURCES: &str = include_str!("../../reproduce/sources.toml");
+
+/// A setting as the table of a report has it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Described {
+    /// Its section and name, such as `motion.epoch`.
+    pub key: String,
+    /// Its value in `reproduce/paper.toml`.
+    pub default: Value,
+    /// `stated (SECTION)` if the paper gives that value, or else `ours`.
+    pub source: String,
+    /// What it means, with its unit and its other values.
+    pub meaning: String,
+}
+
+/// An entry of `reproduce/sources.toml`.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Entry {
+    source: String,
+    meaning: String,
+}
+
+/// All settings, in the order of `reproduce/paper.toml`.
+pub fn described() -> Vec<Described> {
+    let sources = toml::from_str(SOURCES).expect("reproduce/sources.toml is TOML; a test checks it");
+    let defaults = serde_json::to_value(Settings::paper()).expect("settings are plain data");
+    let mut all = Vec::new();
+    gather("", &defaults, &sources, &mut all);
+    all
+}
+
+/// Adds the settings of a section, whose name ends with a point, and of the sections within it.
+fn gather(section: &str, defaults: &Value, sources: &Value, all: &mut Vec<Described>) {
+    for (name, default) in defaults.as_object().into_iter().flatten() {
+        let (key, source) = (format!("{section}{name}"), &sources[name]);
+        if default.is_object() {
+            gather(&format!("{key}."), default, source, all);
+        } else {
+            let Entry { source, meaning } =
+                Entry::deserialize(source).expect("every setting has a source; a test checks it");
+            all.push(Described { key, default: default.clone(), source, meaning });
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::file::PAPER;
+    use super::*;
+
+    /// Keys of `reproduce/paper.toml`, each with its comment.
+    fn comments() -> Vec<(String, String)> {
+        let (mut section, mut found) = ("", Vec::<(String, String)>::new());
+        for line in PAPER.lines() {
+            if let Some(name) = line.strip_prefix('[') {
+                section = name.trim_end_matches(']');
+            } else if let Some((assignment, comment)) = line.split_once('#') {
+                match assignment.split_once('=') {
+                    Some((name, _)) => {
+                        found.push((format!("{section}.{}", name.trim()), comment.trim().to_owned()));
+                    }
+                    // A comment that goes on, and not that of a section.
+                    None if line.starts_with(' ') => {
+                        let (_, begun) = found.last_mut().expect("a setting before it");
+                        *begun += &format!(" {}", comment.trim());
+                    }
+                    None => (),
+                }
+            }
+        }
+        found
+    }
+
+    #[test]
+    fn every_setting_has_the_source_and_the_meaning_that_its_comment_gives() {
+        let in_words = |Described { key, source, meaning, .. }| {
+            assert!(source == "ours" || source.starts_with("stated ("), "{key}: {source}");
+            (key, format!("{source}: {meaning}"))
+        };
+        let described: Vec<_> = described().into_iter().map(in_words).collect();
+        assert_eq!(described, comments());
+        let sources: toml::Table = SOURCES.parse().unwrap();
+        fn count(table: &toml::Table) -> usize {
+            let tables = table.values().filter_map(toml::Value::as_table);
+            tables.map(|inner| if inner.contains_key("meaning") { 1 } else { count(inner) }).sum()
+        }
+        assert_eq!(count(&sources), described.len(), "a source of no setting");
+    }
+}
