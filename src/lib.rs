@@ -59,6 +59,7 @@ mod report;
 pub mod settings;
 pub mod stages;
 mod study;
+mod tasks;
 
 #[doc(hidden)]
 pub mod cli;
@@ -70,7 +71,7 @@ pub mod internals {
     pub use crate::analysis::posterior::Posterior;
     pub use crate::analysis::published::figures;
     pub use crate::analysis::statistics;
-    pub use crate::experiments::verify;
+    pub use crate::files::verify;
     pub use crate::numerics::log_sum::log_sum;
     pub use crate::report::page::Page;
     pub use crate::report::{markdown, plot};

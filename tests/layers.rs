@@ -8,7 +8,7 @@ use std::fs;
 use std::path::Path;
 
 /// The rooms from the ground up: each imports only those before it.
-const ROOMS: [&str; 12] = [
+const ROOMS: [&str; 13] = [
     "numerics",
     "stages",
     "files",
@@ -18,6 +18,7 @@ const ROOMS: [&str; 12] = [
     "estimate",
     "analysis",
     "report",
+    "tasks",
     "experiments",
     "study",
     "cli",

@@ -13,7 +13,6 @@ use super::output::say;
 use super::tree::{self, refuse_truth, say_cleaned};
 use crate::analysis::statistics::mean;
 use crate::estimate::{self, estimate};
-use crate::experiments::progress::progress;
 use crate::files::tables::{write_rows, write_rows_of};
 use crate::files::touch::read_touch;
 use crate::files::{prepare_folder, write_text};
@@ -24,6 +23,7 @@ use crate::settings::Base;
 use crate::stages::evaluate::score;
 use crate::stages::rigid_parts::MIN_SENSORS;
 use crate::stages::usable::Fault;
+use crate::tasks::progress::progress;
 
 /// Estimates parts and tree of any body from touch alone, such as your own robot (not in the paper).
 ///

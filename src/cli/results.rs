@@ -7,9 +7,9 @@ use anyhow::{Result, ensure};
 use clap::Args;
 
 use super::output::say;
-use crate::experiments::verify::{Finding, Outcome, against_manifest, against_reference};
 use crate::experiments::{bodies, reproduce};
 use crate::files::manifest::Manifest;
+use crate::files::verify::{Finding, Outcome, against_manifest, against_reference};
 use crate::report::page::Page;
 use crate::report::plot;
 use crate::study;

@@ -13,7 +13,6 @@ use super::posterior;
 use crate::analysis::consensus::named_after;
 use crate::analysis::posterior::Posterior;
 use crate::analysis::statistics::{Estimate, mean, rate};
-use crate::experiments::progress::progress;
 use crate::files::body::{NamedBody, read_body};
 use crate::files::moved_body::MovedBody;
 use crate::files::{npy, prepare_folder, tables};
@@ -28,6 +27,7 @@ use crate::stages::quantise::{Scheme, quantise};
 use crate::stages::schema::{EdgeWeight, Keep, Model, Sample, Sampler, Start, best, infer};
 use crate::stages::sense::sense;
 use crate::stages::simulate::simulate;
+use crate::tasks::progress::progress;
 
 /// Stages 1 and 2: simulates a body that moves at random in a fluid, and records the pressures on its sensors.
 ///

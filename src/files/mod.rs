@@ -13,6 +13,8 @@ pub(crate) mod result_folder;
 pub(crate) mod ro_crate;
 pub mod tables;
 pub mod touch;
+#[doc(hidden)]
+pub mod verify;
 mod whole;
 
 pub use self::error::{FileError, one_line};

@@ -9,7 +9,7 @@ use super::choices::{Gains, short};
 use super::extends::{BUNDLED, DesignText};
 use super::levels::{Draws, Level};
 use crate::analysis::published::{Claim, Experiment, Measure};
-use crate::experiments::error::ExperimentError;
+use crate::tasks::error::ExperimentError;
 
 /// The name of the base among configurations that vary one factor at a time.
 pub const BASE: &str = "default";

@@ -5,8 +5,8 @@ use std::path::Path;
 use toml::{Table, Value};
 
 use super::choices::merge;
-use crate::experiments::error::ExperimentError;
 use crate::settings::read_toml;
+use crate::tasks::error::ExperimentError;
 
 /// The designs that the program brings: those of `reproduce/`, by name.
 pub const BUNDLED: [(&str, &str); 7] = [

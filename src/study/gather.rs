@@ -10,11 +10,11 @@ use super::plan::Configuration;
 use super::ranking::Ranking;
 use super::results::{Gathering, Results};
 use super::work::{DESIGN, Work, check_design};
-use crate::experiments::error::ExperimentError;
 use crate::files::manifest::Manifest;
 use crate::files::result_folder::ResultFolder;
 use crate::files::{one_line, read_text};
 use crate::settings::Settings;
+use crate::tasks::error::ExperimentError;
 
 /// The page of a study.
 const PAGE: &str = "study.md";

@@ -8,8 +8,8 @@ use super::choices::{flat, merge};
 use super::design::{BASE, Choice, Design, Factor, Vary};
 use super::draw::drawn;
 use super::levels::Places;
-use crate::experiments::error::ExperimentError;
 use crate::settings::Settings;
+use crate::tasks::error::ExperimentError;
 
 /// One way to run the experiments.
 #[derive(Debug, Clone)]

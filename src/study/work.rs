@@ -14,17 +14,17 @@ use serde::{Deserialize, Serialize};
 use super::outcome::{Failure, Outcome};
 use super::plan::Configuration;
 use super::shard::Shard;
-use crate::experiments::batch::{Batch, Found, Outcome as TaskOutcome};
-use crate::experiments::cache::Keys;
-use crate::experiments::error::ExperimentError;
-use crate::experiments::progress::progress;
-use crate::experiments::task::{Keep, Task, by_movement};
 use crate::files::checkpoint::Checkpoints;
 use crate::files::{FileError, read_text, sha256_of_text, write_same_text};
 use crate::pipeline::{Condition, Record};
 use crate::settings::Settings;
 use crate::stages::schema::Model;
 use crate::stages::simulate::Resolution;
+use crate::tasks::batch::{Batch, Found, Outcome as TaskOutcome};
+use crate::tasks::cache::Keys;
+use crate::tasks::error::ExperimentError;
+use crate::tasks::progress::progress;
+use crate::tasks::task::{Keep, Task, by_movement};
 
 /// Where the design is kept beside the results.
 pub const DESIGN: &str = "design.toml";

@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 use toml::Table;
 
-use super::super::error::ExperimentError;
 use crate::files::body::{NamedBody, read_body};
 use crate::files::sha256;
 use crate::settings::Settings;
+use crate::tasks::error::ExperimentError;
 
 /// What is simulated, and what is recorded of it.
 #[derive(Debug, Clone, Serialize, Deserialize)]

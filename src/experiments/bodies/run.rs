@@ -5,8 +5,6 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use rayon::prelude::*;
 
-use super::super::error::ExperimentError;
-use super::super::progress::progress;
 use super::design::Design;
 use super::movement::{EdgeRow, Found, Movement, Row};
 use super::page::{PICTURE, Page};
@@ -16,6 +14,8 @@ use crate::files::result_folder::ResultFolder;
 use crate::files::tables::read_rows;
 use crate::files::{FileError, prepare_folder, read_text, write_text};
 use crate::report::plot;
+use crate::tasks::error::ExperimentError;
+use crate::tasks::progress::progress;
 
 const ROWS: &str = "recordings.csv";
 const EDGES: &str = "edges.csv";

@@ -1,12 +1,12 @@
 //! Gather how the first simulation begins at each p that figures 4 and 5 and the viewer show.
 
-use super::super::batch::Found;
-use super::super::beginning::simulate_beginning;
-use super::super::error::ExperimentError;
-use super::super::task::Task;
 use super::run::Run;
 use crate::analysis::published::Experiment;
 use crate::stages::simulate::Trajectory;
+use crate::tasks::batch::Found;
+use crate::tasks::beginning::simulate_beginning;
+use crate::tasks::error::ExperimentError;
+use crate::tasks::task::Task;
 
 /// The first seconds of the first simulation, at one p after the other.
 #[derive(Debug, Default)]

@@ -5,10 +5,6 @@ use std::time::{Instant, SystemTime};
 
 use serde_json::{Value, json};
 
-use super::super::batch::{Batch, Found, Outcome};
-use super::super::error::ExperimentError;
-use super::super::progress::progress;
-use super::super::task::{Keep, Task};
 use super::beginnings::Beginnings;
 use super::interpretation::OtherInterpretation;
 use super::run::{Run, preamble};
@@ -34,6 +30,10 @@ use crate::settings::Settings;
 use crate::stages::agent::Agent;
 use crate::stages::schema::Model;
 use crate::stages::simulate::Resolution;
+use crate::tasks::batch::{Batch, Found, Outcome};
+use crate::tasks::error::ExperimentError;
+use crate::tasks::progress::progress;
+use crate::tasks::task::{Keep, Task};
 
 /// A finished experiment.
 #[derive(Debug)]

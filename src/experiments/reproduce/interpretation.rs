@@ -1,7 +1,5 @@
 //! Infer the headline by the other interpretation of the paper as well, on the same simulations.
 
-use super::super::batch::Outcome;
-use super::super::task::{Keep, Task};
 use super::run::Run;
 use crate::analysis::claims::{Judged, headline};
 use crate::analysis::conditions::Conditions;
@@ -10,6 +8,8 @@ use crate::analysis::published::{HEADLINE, Measure, claims};
 use crate::pipeline::{Condition, Record};
 use crate::settings::{Settings, SettingsError};
 use crate::stages::schema::{Model, Sampler};
+use crate::tasks::batch::Outcome;
+use crate::tasks::task::{Keep, Task};
 
 /// `reproduce/authors.toml`.
 const AUTHORS: &str = include_str!("../../../reproduce/authors.toml");

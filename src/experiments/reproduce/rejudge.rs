@@ -2,7 +2,6 @@
 
 use std::path::Path;
 
-use super::super::error::ExperimentError;
 use super::experiment::{judge_all, write_curves};
 use super::interpretation::other_than;
 use crate::analysis::claims::headline;
@@ -18,6 +17,7 @@ use crate::report::figures::Figures;
 use crate::report::headline::{Headline, claims_page};
 use crate::report::plot::Picture;
 use crate::settings::Settings;
+use crate::tasks::error::ExperimentError;
 
 /// Writes claims.csv, claims.md and the tables and pictures of the figures again, and the manifest with their hashes. Returns the
 /// pictures; `None` where the folder does not have the samples.

@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use super::super::seeds::is_held_out;
 use crate::analysis::published::Experiment;
 use crate::settings::Settings;
 use crate::stages::simulate::Resolution;
+use crate::tasks::seeds::is_held_out;
 
 /// How an experiment is run.
 #[derive(Debug)]

@@ -5,8 +5,6 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use super::super::batch::Found;
-use super::super::task::Task;
 use super::beginnings::Beginnings;
 use super::run::Run;
 use crate::files::FileError;
@@ -20,6 +18,8 @@ use crate::stages::agent::Agent;
 use crate::stages::schema::Model;
 use crate::stages::sense::sense;
 use crate::stages::simulate::Trajectory;
+use crate::tasks::batch::Found;
+use crate::tasks::task::Task;
 
 /// Writes a scene for each p, and returns their data, p rising.
 ///

@@ -12,9 +12,11 @@ use std::path::{Component, Path};
 use serde::Deserialize;
 use serde_json::Value;
 
-use crate::files::manifest::{HashedFile, Manifest};
-use crate::files::ro_crate::{self, RO_CRATE};
-use crate::files::{FileError, npy, sha256, tables};
+use super::error::FileError;
+use super::hash::sha256;
+use super::manifest::{HashedFile, Manifest};
+use super::ro_crate::{self, RO_CRATE};
+use super::{npy, tables};
 
 /// Numbers agree if they differ by no more than this share of the larger one, or of 1.
 pub const TOLERANCE: f64 = 1e-6;
