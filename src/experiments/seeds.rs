@@ -102,22 +102,46 @@ mod tests {
     use super::*;
 
     /// The kinds of all uses of a seed.
-    fn kinds(seed: u64) -> Vec<Kind> {
-        list().iter().filter(|used| used.seeds().contains(&seed)).map(|used| used.kind).collect()
+    fn kinds(list: &[Used], seed: u64) -> Vec<Kind> {
+        list.iter().filter(|used| used.seeds().contains(&seed)).map(|used| used.kind).collect()
+    }
+
+    /// Uses that say nothing or are no range, and those of results on seeds that something was chosen on.
+    fn wrong(list: &[Used]) -> Vec<String> {
+        let spoils = |used: &Used, other: Kind| match used.kind {
+            Kind::Report => other == Kind::Calibration,
+            Kind::Confirmation => other != Kind::Confirmation,
+            _ => false,
+        };
+        let is_wrong = |used: &&Used| {
+            let empty = [&used.purpose, &used.by, &used.at].iter().any(|text| text.is_empty());
+            let range = used.last.is_none_or(|last| used.first < last && last - used.first < 1000);
+            empty
+                || !range
+                || used.seeds().any(|seed| kinds(list, seed).into_iter().any(|other| spoils(used, other)))
+        };
+        list.iter().filter(is_wrong).map(Used::to_string).collect()
     }
 
     #[test]
     fn results_and_the_confirmation_are_of_seeds_that_no_setting_was_chosen_on() {
-        for used in list() {
-            assert!(!used.seeds().is_empty() && used.last != Some(used.first), "{used}");
-            assert!(used.seeds().end() - used.seeds().start() < 1000, "too many to go through: {used}");
-            assert!(!used.purpose.is_empty() && !used.by.is_empty() && !used.at.is_empty(), "{used}");
-            for seed in used.seeds() {
-                let kinds = kinds(seed);
-                let reported = kinds.contains(&Kind::Report) || kinds.contains(&Kind::Confirmation);
-                assert!(!(reported && kinds.contains(&Kind::Calibration)), "seed {seed}: {kinds:?}");
-                assert!(kinds == [Kind::Confirmation] || !kinds.contains(&Kind::Confirmation), "seed {seed}");
-            }
+        assert_eq!(wrong(&list()), [""; 0]);
+        let of = |first, last, kind| Used {
+            first,
+            last,
+            kind,
+            purpose: "to test".to_owned(),
+            by: "this".to_owned(),
+            at: "now".to_owned(),
+        };
+        let chosen = || of(1, Some(9), Kind::Calibration);
+        for found in [
+            vec![chosen(), of(5, None, Kind::Report)],
+            vec![of(5, None, Kind::Confirmation), of(5, None, Kind::Study)],
+            vec![of(9, Some(5), Kind::Study)],
+            vec![Used { at: String::new(), ..chosen() }],
+        ] {
+            assert_eq!(wrong(&found).len(), 1);
         }
     }
 
@@ -134,20 +158,20 @@ mod tests {
     #[test]
     fn every_seed_of_a_design_is_listed() {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("reproduce");
-        let mut found = Vec::new();
+        let (used, mut found) = (list(), Vec::new());
         for file in fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
             let name = file.file_name().unwrap().to_str().unwrap().to_owned();
             let Some(design) = name.strip_suffix(".toml") else { continue };
             let text: Table = fs::read_to_string(&file).unwrap().parse().unwrap();
             let Some(all) = seeds(&text, design.starts_with("multiverse")) else { continue };
-            let unlisted = all.clone().find(|&seed| kinds(seed).is_empty());
+            let unlisted = all.clone().find(|&seed| kinds(&used, seed).is_empty());
             assert_eq!(unlisted, None, "{name}: add its seed to reproduce/seeds.toml");
             let wanted = match design {
                 "paper" => Some(Kind::Report),
                 "confirm" => Some(Kind::Confirmation),
                 _ => None,
             };
-            assert!(wanted.is_none_or(|kind| kinds(*all.start()).contains(&kind)), "{name}");
+            assert!(wanted.is_none_or(|kind| kinds(&used, *all.start()).contains(&kind)), "{name}");
             found.push(name);
         }
         for name in ["paper.toml", "confirm.toml", "bodies.toml", "sensitivity.toml", "multiverse.toml"] {
