@@ -16,7 +16,8 @@ CONFIRMATION, BEFORE = "docs/shown/confirm", "docs/shown"
 # Values of columns of claims.csv and of the tables of figures.
 ALL, BEST, EQUATIONS, CODE = "all-draws", "best-draw", "equations", "authors-code"
 ABLATION, MOMENTUM, STEP = (f"docs/shown/{name}/study.csv" for name in ["ablation", "momentum", "step"])
-SENSITIVITY = "docs/shown/sensitivity/measures.csv"
+SENSITIVITY = "docs/shown/sensitivity/measures.csv.gz"
+FORMER = "docs/shown/former-defaults.csv"
 
 # What values.toml will hold: each value in words, with its file; what holds; and what the text says that is not so.
 values = {}
@@ -111,9 +112,9 @@ def side(number, low, high):
 # ---- Tables of claims and of comparisons
 
 
-def headline(source, reading):
-    """The row of the headline in a table of claims."""
-    return next(row for row in table(source) if (row["id"], row["reading"], row["counting"]) == ("tree-accuracy", reading, ALL))
+def former_default(number, reading):
+    """The row of the headline of a former default, by one interpretation."""
+    return next(row for row in table(FORMER) if (row["default"], row["reading"]) == (number, reading))
 
 
 def compared(source):

@@ -1,6 +1,5 @@
 """The tables of the article: all claims, tree accuracies by configuration, and open choices. Used by values.py."""
 
-import json
 import tomllib
 
 from committed import *
@@ -40,6 +39,12 @@ def marked(verdict, before):
     return (f"*{verdict}*" if verdict == "reproduced" else verdict) + ("" if verdict == before else " †")
 
 
+def folder(source):
+    """Where in docs/shown a table lies: its folder, or the table itself."""
+    path = source.removeprefix("docs/shown/")
+    return path.rpartition("/")[0] or path.partition(".")[0]
+
+
 # ---- Table of tree accuracies
 
 
@@ -57,7 +62,7 @@ def rates(now, before):
                 "n": thousands(row["n"]),
                 "rate": percent(right) if right else "–",
                 "interval": percents(row["low"], row["high"]) if right else "",
-                "source": source.removeprefix("docs/shown/").rpartition("/")[0],
+                "source": folder(source),
             }
         )
 
@@ -90,14 +95,13 @@ def rates(now, before):
     ]:
         row = next(row for row in sensitivity("tree", part) if name in [None, row["setting"]])
         add(words, row, SENSITIVITY, seed(SENSITIVITY), row["simulations"])
-    collapsed, dry = "docs/shown/collapsed/exp1/claims.csv", "docs/shown/no-fluid/exp1/claims.csv"
-    for words, source, reading in [
-        ("fifth default, two-way coupling", collapsed, EQUATIONS),
-        ("third default, one-way coupling, its interpretation: authors' code", dry, CODE),
-        ("third default, by the equations", dry, EQUATIONS),
+    for words, number, reading in [
+        ("fifth default, two-way coupling", "5", EQUATIONS),
+        ("third default, one-way coupling, its interpretation: authors' code", "3", CODE),
+        ("third default, by the equations", "3", EQUATIONS),
     ]:
-        facts = json.loads(read(source.replace("claims.csv", "manifest.json")))
-        add(words, headline(source, reading), source, facts["seed"], len({body["simulation"] for body in facts["bodies"]}))
+        row = former_default(number, reading)
+        add(words, row, FORMER, row["seed"], row["simulations"])
     found = compared(MOMENTUM)
     for name, words in {"as the engine leaves it": "third default, other simulations", "conserved": "third default, other simulations, drift taken off"}.items():
         add(words, found[name, "tree-accuracy"], MOMENTUM, seed(MOMENTUM), found[name, "number-of-parts"]["simulations"])
@@ -179,6 +183,6 @@ def choice_row(state, found, source, accepted):
         "found": "; ".join(f"*{rate}* {', '.join(alike)}" for rate, alike in names.items()),
         "lost": f"{len(lost)} of {len(found)}",
         "lowest": f"{row['n']} of {all} eligible" if hardly(found[0]) else f"{percents(row['low'], row['high'], 0)}; n = {row['n']}",
-        "source": source.removeprefix("docs/shown/").split("/")[0],
+        "source": folder(source),
     }
     return (-len(lost) / len(found), rate(found[0])), cells

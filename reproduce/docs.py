@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 """Put the results of finished runs into the repository: reproduce/docs.py [RESULTS]
 
-RESULTS is the folder that holds confirm, exp1, exp2, search, sensitivity, ablation, step, momentum, multiverse, multiverse-held-out,
+RESULTS is the folder that holds confirm, exp1, exp2, sensitivity, ablation, step, momentum, multiverse, multiverse-held-out,
 mixing and bodies (default: results/). It updates
 
-- docs/shown/: for each run and study its tables, its pictures, and its page as README.md; for confirm and the two experiments also
-  their manifests;
+- docs/shown/: for each run and study its tables (large ones packed by gzip), its pictures, and its page as README.md; for confirm and
+  the two experiments also their manifests;
 - README.md and docs/results.md: what lies between <!-- NAME --> and <!-- /NAME -->, from docs/shown. It needs no run;
-- docs/settings.md: the table of open settings, from paper.toml, sensitivity.toml and the search that is shown. It needs no run;
+- docs/settings.md: the table of open settings, from paper.toml, sensitivity.toml and docs/shown/searches.csv. It needs no run;
 - docs/shown/claims.md: the paper's sentences, claims and verdicts, from claims.toml and docs/shown. It needs no run;
 - article/values.toml: the numbers of the article, from docs/shown. It needs no run.
 
@@ -26,6 +26,8 @@ import tomllib
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 SHOWN = ROOT / "docs" / "shown"
+# Tables with more bytes are packed: nearly all of them is again and again the same.
+LARGE = 200_000
 
 # The claims that the README shows beside the headline: what the abstract of the paper rests on, and what a reader would ask next.
 CLAIMS = [
@@ -50,7 +52,7 @@ FLUID = ["physics.fluid_density", "physics.angular_momentum", "sense.threshold"]
 def main():
     results = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "results"
     experiments = [experiment_1, experiment_2, confirmation_1, confirmation_2]
-    studies = [search, sensitivity, ablation, shorter_step, momentum, multiverse, held_out, mixing, bodies]
+    studies = [sensitivity, ablation, shorter_step, momentum, multiverse, held_out, mixing, bodies]
     for step in [*experiments, *studies]:
         try:
             step(results)
@@ -270,16 +272,6 @@ def table_row(cells):
 # ---- The studies
 
 
-def search(results):
-    shown = SHOWN / "fluid-pairwise"  # the part whose winner is the default
-    # The last round leaves no candidates, and one without a resolved candidate no winner.
-    optional = ["next.toml", "best.toml"]
-    there = [name for name in optional if (results / "search" / name).exists()]
-    copy([results / "search" / name for name in ["search.md", "scores.csv", "credits.csv", *there]], shown)
-    for name in set(optional) - set(there):
-        (shown / name).unlink(missing_ok=True)
-
-
 def sensitivity(results):
     study(results / "sensitivity", ["configurations.csv", "study.csv", "measures.csv"])
 
@@ -297,15 +289,8 @@ def momentum(results):
 
 
 def multiverse(results):
-    large = ["configurations.csv", "study.csv"]
-    study(results / "multiverse", [*large, "headline.csv", "shares.csv", "variance.csv", "joint.csv"])
-    # Over a megabyte, and nearly all of it again and again the same.
-    page = SHOWN / "multiverse" / "README.md"
-    for table in large:
-        plain = SHOWN / "multiverse" / table
-        plain.with_name(f"{table}.gz").write_bytes(gzip.compress(plain.read_bytes(), mtime=0))
-        plain.unlink()
-        page.write_text(page.read_text().replace(f"]({table})", f"]({table}.gz)"))
+    tables = ["configurations.csv", "study.csv", "headline.csv", "shares.csv", "variance.csv", "joint.csv"]
+    study(results / "multiverse", tables)
 
 
 def held_out(results):
@@ -358,12 +343,18 @@ def mixing(results):
 
 def study(folder, tables, page="study.md"):
     """Put the tables, the pictures and the page of a study into its folder of docs/shown."""
-    name, text = folder.name, (folder / page).read_text()
-    copy([*(folder / table for table in tables), *sorted((folder / "figures").glob("*.svg"))], SHOWN / name)
+    shown, text = SHOWN / folder.name, (folder / page).read_text()
+    copy([*(folder / table for table in tables), *sorted((folder / "figures").glob("*.svg"))], shown)
     # The page moves, so that links to its own pictures and to files of the repository change.
     for old, new in [("](figures/", "]("), ("](docs/shown/", "](../"), ("](docs/", "](../../"), ("](reproduce/", "](../../../reproduce/")]:
         text = text.replace(old, new)
-    (SHOWN / name / "README.md").write_text(text)
+    for table in tables:
+        plain = shown / table
+        if plain.stat().st_size > LARGE:
+            plain.with_name(f"{table}.gz").write_bytes(gzip.compress(plain.read_bytes(), mtime=0))
+            plain.unlink()
+            text = text.replace(f"]({table})", f"]({table}.gz)")
+    (shown / "README.md").write_text(text)
 
 
 # ---- The open settings
@@ -374,9 +365,9 @@ def open_settings():
     settings = read_settings()
     folder = ROOT / "reproduce"
     study = tomllib.loads((folder / "sensitivity.toml").read_text())
-    # What the search has varied with one-way fluid coupling, and, over these, with two-way coupling.
-    searched = {key: "search, one-way coupling" for key in varied("screen", settings)}
-    searched |= {key: "search" for screen in ["fluid-screen", "fluid-wide"] for key in varied(screen, settings)}
+    # What the searches varied with one-way fluid coupling, and, over these, with two-way coupling.
+    searched = {key: "search, one-way coupling" for key in varied("one-way")}
+    searched |= {key: "search" for key in varied("two-way")}
     lines = ["| setting | the paper says | ours | reason | source |", "|---|---|---|---|---|"]
     named = set()
     for part in study["factor"]:
@@ -406,12 +397,10 @@ def open_settings():
     between_marks(ROOT / "docs" / "settings.md", "settings", "\n".join(lines))
 
 
-def varied(screen, settings):
-    """Settings of which a screen of the search has several values; a candidate without one has the default's."""
-    with open(SHOWN / screen / "scores.csv", newline="") as file:
-        candidates = [dict(re.findall(r"([\w.]+) = ([^,]+)", row["settings"])) for row in csv.DictReader(file)]
-    keys = {key for candidate in candidates for key in candidate}
-    return {key for key in keys if len({candidate.get(key, settings[key]["value"]) for candidate in candidates}) > 1}
+def varied(coupling):
+    """Settings of which the configurations of a round have several values, over all rounds with a fluid coupling."""
+    with open(SHOWN / "searches.csv", newline="") as file:
+        return {key for row in csv.DictReader(file) if row["coupling"] == coupling for key in row["varied"].split()}
 
 
 def anchor(part):

@@ -36,7 +36,7 @@ fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// Pages in Markdown that a reader comes to; generated ones stand in folders of `docs/shown`. Pages of finished searches are history.
+/// Pages in Markdown that a reader comes to; generated ones stand in folders of `docs/shown`.
 fn pages() -> Vec<PathBuf> {
     let named = [
         "README.md",

@@ -10,6 +10,7 @@ use super::options::Threads;
 use super::output::say;
 use crate::files::prepare_folder;
 use crate::study::{self, Design, DesignText, Only, Shard, plan};
+use crate::tasks::seeds::used_before;
 
 /// Runs many configurations of the experiments on shared simulations, and says by which the paper's claims hold.
 ///
@@ -54,6 +55,9 @@ impl Study {
         let mut configurations = plan(&design)?;
         if let Some(only) = &self.only {
             configurations = only.of(&design, configurations)?;
+        }
+        if let Some(used) = used_before(design.seeds()) {
+            eprintln!("bodyschema: {used}");
         }
         let out = &self.out;
         prepare_folder(out)?;

@@ -2,6 +2,8 @@
 
 mod check;
 
+use std::ops::RangeInclusive;
+
 use serde::{Deserialize, Serialize};
 use toml::Table;
 
@@ -212,6 +214,14 @@ impl Design {
             (Some(Vary::OneAtATime), _) => vec![Section::Factors],
             (None, None) => vec![Section::Values, Section::Changes],
             _ => vec![Section::Shares, Section::Variance, Section::Curves],
+        }
+    }
+
+    /// The seeds of all its movements.
+    pub fn seeds(&self) -> RangeInclusive<u64> {
+        match self.draws {
+            Some(draws) => self.seed + 1..=self.seed + draws.movements as u64,
+            None => self.seed..=self.seed,
         }
     }
 

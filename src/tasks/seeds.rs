@@ -1,9 +1,198 @@
-//! Tell seeds that were used to choose settings from those that are held out.
+//! Say for what a seed was used before: `reproduce/seeds.toml` lists the seeds of the searches, of results and of studies.
 
-/// Seeds by which settings were chosen or studied.
-const USED: [u64; 7] = [1, 3, 4, 5, 6, 7, 8];
+use std::fmt;
+use std::ops::RangeInclusive;
 
-/// Whether neither a search for the default nor the study of its settings has used a master seed.
-pub fn is_held_out(seed: u64) -> bool {
-    !USED.contains(&seed)
+use serde::Deserialize;
+
+/// `reproduce/seeds.toml`.
+const SEEDS: &str = include_str!("../../reproduce/seeds.toml");
+
+/// The list.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct List {
+    seeds: Vec<Used>,
+}
+
+/// A use of a seed, or of all seeds of a range.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Used {
+    first: u64,
+    /// `first` without one.
+    last: Option<u64>,
+    kind: Kind,
+    /// For what, as the end of the sentence "was used before: …".
+    purpose: String,
+    /// The design, script or page.
+    by: String,
+    /// The revision or the tag at which it ran.
+    at: String,
+}
+
+/// What a seed's simulations can still show.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum Kind {
+    /// Settings were chosen on it.
+    Calibration,
+    /// Results of a default; no setting was chosen on it before.
+    Report,
+    /// The registered run.
+    Confirmation,
+    /// Results of a study; nothing was chosen.
+    Study,
+    /// Movements of a multiverse.
+    Multiverse,
+    /// The accuracy of `estimate`.
+    Benchmark,
+    /// A page or a check runs it.
+    Example,
+}
+
+impl Used {
+    fn seeds(&self) -> RangeInclusive<u64> {
+        self.first..=self.last.unwrap_or(self.first)
+    }
+}
+
+impl fmt::Display for Used {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let Self { kind, purpose, by, at, .. } = self;
+        let kind = match kind {
+            Kind::Calibration => "calibration",
+            Kind::Report => "held out until then",
+            Kind::Confirmation => "registered",
+            Kind::Study => "study",
+            Kind::Multiverse => "multiverse",
+            Kind::Benchmark => "benchmark",
+            Kind::Example => "example",
+        };
+        write!(f, "{purpose} ({kind}: {by}, {at})")
+    }
+}
+
+/// For what master seeds were used before, in a sentence; `None` if none of them was.
+pub fn used_before(seeds: RangeInclusive<u64>) -> Option<String> {
+    let (first, last) = (seeds.start(), seeds.end());
+    let meet = |used: &Used| used.seeds().start() <= last && first <= used.seeds().end();
+    let uses: Vec<String> = list().iter().filter(|used| meet(used)).map(Used::to_string).collect();
+    let which = if first == last {
+        format!("Seed {first} was")
+    } else {
+        format!("Some of seeds {first} to {last} were")
+    };
+    (!uses.is_empty()).then(|| format!("{which} used before: {}.", uses.join("; ")))
+}
+
+fn list() -> Vec<Used> {
+    let List { seeds } =
+        toml::from_str(SEEDS).expect("reproduce/seeds.toml is a list of seeds; a test checks it");
+    seeds
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+    use std::path::Path;
+
+    use toml::{Table, Value};
+
+    use super::*;
+
+    /// The kinds of all uses of a seed.
+    fn kinds(list: &[Used], seed: u64) -> Vec<Kind> {
+        list.iter().filter(|used| used.seeds().contains(&seed)).map(|used| used.kind).collect()
+    }
+
+    /// Uses that say nothing or are no range, and those of results on seeds that something was chosen on.
+    fn wrong(list: &[Used]) -> Vec<String> {
+        let spoils = |used: &Used, other: Kind| match used.kind {
+            Kind::Report => other == Kind::Calibration,
+            Kind::Confirmation => other != Kind::Confirmation,
+            _ => false,
+        };
+        let is_wrong = |used: &&Used| {
+            let empty = [&used.purpose, &used.by, &used.at].iter().any(|text| text.is_empty());
+            let range = used.last.is_none_or(|last| used.first < last && last - used.first < 1000);
+            empty
+                || !range
+                || used.seeds().any(|seed| kinds(list, seed).into_iter().any(|other| spoils(used, other)))
+        };
+        list.iter().filter(is_wrong).map(Used::to_string).collect()
+    }
+
+    #[test]
+    fn results_and_the_confirmation_are_of_seeds_that_no_setting_was_chosen_on() {
+        assert_eq!(wrong(&list()), [""; 0]);
+        let of = |first, last, kind| Used {
+            first,
+            last,
+            kind,
+            purpose: "to test".to_owned(),
+            by: "this".to_owned(),
+            at: "now".to_owned(),
+        };
+        let chosen = || of(1, Some(9), Kind::Calibration);
+        for found in [
+            vec![chosen(), of(5, None, Kind::Report)],
+            vec![of(5, None, Kind::Confirmation), of(5, None, Kind::Study)],
+            vec![of(9, Some(5), Kind::Study)],
+            vec![Used { at: String::new(), ..chosen() }],
+        ] {
+            assert_eq!(wrong(&found).len(), 1);
+        }
+    }
+
+    /// The seeds of a design: those of the movements of a multiverse follow its own.
+    fn seeds(design: &Table, multiverse: bool) -> Option<RangeInclusive<u64>> {
+        let within = |name: &str| design.get(name)?.get("seed");
+        let seed = design.get("seed").or_else(|| within("experiment")).or_else(|| within("registered"))?;
+        let movements = design.get("draws").and_then(|draws| draws.get("movements")).filter(|_| multiverse);
+        let (seed, more) =
+            (seed.as_integer()? as u64, movements.and_then(Value::as_integer).unwrap_or(0) as u64);
+        Some(seed..=seed + more)
+    }
+
+    #[test]
+    fn every_seed_of_a_design_is_listed() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("reproduce");
+        let (used, mut found) = (list(), Vec::new());
+        for file in fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
+            let name = file.file_name().unwrap().to_str().unwrap().to_owned();
+            let Some(design) = name.strip_suffix(".toml") else { continue };
+            let text: Table = fs::read_to_string(&file).unwrap().parse().unwrap();
+            let Some(all) = seeds(&text, design.starts_with("multiverse")) else { continue };
+            let unlisted = all.clone().find(|&seed| kinds(&used, seed).is_empty());
+            assert_eq!(unlisted, None, "{name}: add its seed to reproduce/seeds.toml");
+            let wanted = match design {
+                "paper" => Some(Kind::Report),
+                "confirm" => Some(Kind::Confirmation),
+                _ => None,
+            };
+            assert!(wanted.is_none_or(|kind| kinds(&used, *all.start()).contains(&kind)), "{name}");
+            found.push(name);
+        }
+        for name in ["paper.toml", "confirm.toml", "bodies.toml", "sensitivity.toml", "multiverse.toml"] {
+            assert!(found.iter().any(|design| design == name), "{name} has a seed: {found:?}");
+        }
+    }
+
+    #[test]
+    fn a_sentence_says_for_what_a_seed_was_used() {
+        let at_8 = "Seed 8 was used before: to choose the fifth and today's default (calibration: \
+                    reproduce/fluid-wide.toml, tag searches).";
+        assert_eq!(used_before(8..=8).unwrap(), at_8);
+        let of_default = used_before(1414..=1414).unwrap();
+        assert!(
+            of_default.starts_with("Seed 1414 was used before: for the published results of today's default")
+        );
+        let several = used_before(8..=9).unwrap();
+        assert_eq!(several, at_8.replacen("Seed 8 was", "Some of seeds 8 to 9 were", 1));
+        // Within a range, and beside its ends.
+        assert!(used_before(6_000_064..=6_000_070).is_some() && used_before(9003..=9003).is_some());
+        assert_eq!(used_before(6_000_065..=6_000_070), None);
+        assert_eq!(used_before(424_242..=424_242), None);
+    }
 }

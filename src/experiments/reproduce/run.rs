@@ -6,6 +6,7 @@ use crate::analysis::published::Experiment;
 use crate::settings::Settings;
 use crate::stages::simulate::Resolution;
 use crate::tasks::seeds::is_held_out;
+use crate::tasks::seeds::used_before;
 
 /// How an experiment is run.
 #[derive(Debug)]
@@ -46,10 +47,10 @@ pub fn preamble(run: &Run, resolution: Resolution) -> String {
         }
     };
     let caution = if run.quick { " Quick run: its numbers are no replication." } else { "" };
-    let seed = match is_held_out(experiment.seed) {
-        true => "held out: neither the search for the default settings nor the study of them used it",
-        false => "used by the search for the default settings or the study of them",
-    };
+    let seed = experiment.seed;
+    let used = used_before(seed..=seed).unwrap_or_else(|| {
+        format!("Seed {seed} is held out: no search, result or study of this repository used it.")
+    });
     let (simulations, scope) = match experiment.simulations {
         1 => (
             "1 simulation".to_owned(),
@@ -59,12 +60,11 @@ pub fn preamble(run: &Run, resolution: Resolution) -> String {
     };
     let resolved = resolution.in_words("the movements");
     format!(
-        "{what}. Size: {simulations}, {} chains of {} sweeps for each condition, seed {} ({seed}), revision {}. Resolution: {resolved}.{caution} \
-         {scope} Rows marked extension count only the most probable sample of each simulation (highest log posterior), which the \
-         paper does not do.",
+        "{what}. Size: {simulations}, {} chains of {} sweeps for each condition, seed {seed}, revision {}. {used} \
+         Resolution: {resolved}.{caution} {scope} Rows marked extension count only the most probable sample of each \
+         simulation (highest log posterior), which the paper does not do.",
         schema.chains,
         schema.sweeps,
-        experiment.seed,
         env!("BODYSCHEMA_REVISION"),
     )
 }
