@@ -5,7 +5,6 @@ use std::path::Path;
 use crate::analysis::published::Experiment;
 use crate::settings::Settings;
 use crate::stages::simulate::Resolution;
-use crate::tasks::seeds::is_held_out;
 use crate::tasks::seeds::used_before;
 
 /// How an experiment is run.
