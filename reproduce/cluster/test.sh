@@ -22,6 +22,8 @@ stop() {
     for pid in slurmd slurmctld munged; do
         [ ! -s "$work/$pid.pid" ] || kill "$(cat "$work/$pid.pid")" 2>/dev/null || true
     done
+    # Until they have written their last files.
+    for _ in $(seq 50); do pgrep -f "$work" >/dev/null || break; sleep 0.1; done
     [ $status = 0 ] || tail -n 5 "$work"/*.log "$work"/slurm/logs/*.log >&2 2>/dev/null || true
     rm -rf "$work"
     exit $status

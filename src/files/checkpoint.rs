@@ -40,6 +40,11 @@ impl Checkpoints {
         Self { folder: out.join("checkpoints"), key, told: Default::default() }
     }
 
+    /// The same, without a word of them: what is recalled is of this run.
+    pub fn silent(out: &Path, inputs: &impl Serialize) -> Self {
+        Self { told: [true, false].map(AtomicBool::new), ..Self::new(out, inputs) }
+    }
+
     /// What an earlier run kept under a name; `None` if it kept nothing that can be used.
     pub fn recall<T: DeserializeOwned>(&self, name: &str) -> Option<T> {
         let path = self.path(name);

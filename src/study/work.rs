@@ -26,6 +26,9 @@ use crate::tasks::error::ExperimentError;
 use crate::tasks::progress::progress;
 use crate::tasks::task::{Keep, Task, by_movement};
 
+/// What results depend on beside what the names of tasks say: nothing but the program.
+pub const KEY: &str = "study";
+
 /// Where the design is kept beside the results.
 pub const DESIGN: &str = "design.toml";
 
@@ -36,7 +39,7 @@ pub const DESIGN: &str = "design.toml";
 /// If `out` holds results of another design, or a file cannot be written.
 pub fn run(text: &str, plan: &[Configuration], shard: Shard, out: &Path) -> Result<(), ExperimentError> {
     keep_design(text, out)?;
-    let work = Work::new(plan, out);
+    let work = Work::new(plan, Checkpoints::new(out, &KEY));
     let left: Vec<&Movement> =
         work.of_shard(shard).into_iter().filter(|movement| !work.is_finished(movement)).collect();
     let groups: Vec<Vec<Task>> = left.iter().map(|movement| movement.tasks.clone()).collect();
@@ -123,8 +126,8 @@ struct Samples {
 type CompactSample = (usize, usize, usize, Option<f64>, f64, bool, bool);
 
 impl Work {
-    /// The work of some configurations, whose results are in the folder `out`.
-    pub fn new(plan: &[Configuration], out: &Path) -> Self {
+    /// The work of some configurations, and what was finished of it.
+    pub fn new(plan: &[Configuration], checkpoints: Checkpoints) -> Self {
         let (mut tasks, mut of) = (Vec::new(), Vec::new());
         for Configuration { settings, .. } in plan {
             let first = tasks.len();
@@ -153,7 +156,7 @@ impl Work {
             (movement_of[task], name.clone(), settings.motion.coordination)
         };
         Self {
-            checkpoints: Checkpoints::new(out, &"study"),
+            checkpoints,
             movements: groups.iter().map(movement).collect(),
             of: of.into_iter().map(|range| range.map(place).collect()).collect(),
         }
