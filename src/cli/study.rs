@@ -56,9 +56,7 @@ impl Study {
         if let Some(only) = &self.only {
             configurations = only.of(&design, configurations)?;
         }
-        if let Some(used) = used_before(design.seeds()) {
-            eprintln!("bodyschema: {used}");
-        }
+        let used = used_before(design.seeds());
         let out = &self.out;
         prepare_folder(out)?;
         if !self.gather {
@@ -69,6 +67,9 @@ impl Study {
             return Ok(ExitCode::SUCCESS);
         }
         study::gather(design, &source.text, &configurations, self.only.is_none(), out)?;
+        if let Some(used) = used {
+            say(used)?;
+        }
         say(format!("All files are in {}; open study.md there.", out.display()))?;
         Ok(ExitCode::SUCCESS)
     }

@@ -61,7 +61,7 @@ fn provenance(results: &Results) -> String {
     let settings = flat(&design.settings);
     let settings = match settings.is_empty() {
         true => String::new(),
-        false => format!("; all have `{}` instead", settings.join("`, `")),
+        false => format!("; all have `{}` instead", settings.join(", ")),
     };
     let used = used_before(design.seeds()).map_or(String::new(), |used| format!(" {used}"));
     format!(
