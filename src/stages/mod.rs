@@ -9,7 +9,7 @@
 //! | 4 | [`distance`] | symbols → [`Distances`](distance::Distances): M × M, bits | equations 23 to 26 |
 //! | 5 | [`body_map`] | distances → [`BodyMap`](body_map::BodyMap): M × d, bits | section 4.1 |
 //! | 6 | [`schema`] | body map → [`Sample`](schema::Sample)s: component of each sensor, tree | equations 1 to 22 |
-//! | 7 | [`evaluate`] | draw, truth → [`Score`](evaluate::Score): adjusted Rand index, tree right or wrong | section 5.2 |
+//! | 7 | [`evaluate`] | posterior sample, truth → [`Score`](evaluate::Score): adjusted Rand index, whether the true tree is recovered | section 5.2 |
 //!
 //! Beside the paper, for one's own recordings:
 //!

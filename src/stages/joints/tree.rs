@@ -99,7 +99,7 @@ impl Joints {
 /// input and state of `rng` give the same bytes, whatever the number of threads.
 ///
 /// # Panics
-/// If there is not one label for each sensor, or T is 0.
+/// If there is not one label for each sensor, `rank` is 0, or T is 0.
 pub fn joints(
     tactile: &Tactile,
     labels: &[Option<usize>],
