@@ -6,6 +6,10 @@
 //! what happens, in order; [`pipeline`] composes it and is the file to read first. All [`settings`] have their
 //! defaults in `reproduce/paper.toml`; [`files`] reads and writes what NumPy and a spreadsheet open.
 //!
+//! The program builds on that: `src/tasks` runs simulations and keeps what is finished, `src/experiments` reproduces the paper and
+//! benchmarks `estimate`, `src/study` runs many configurations, `src/analysis` judges claims, `src/report` writes pages and pictures,
+//! and `src/cli` has a file for each subcommand.
+//!
 //! For one's own robot, a [`recording`] is cleaned, and [`estimate`](mod@estimate) finds its parts and tree.
 //!
 //! From a movement to a tree:

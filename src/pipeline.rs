@@ -7,7 +7,7 @@ use crate::numerics::partition::adjusted_rand_index;
 use crate::numerics::rng::{Stream, stream};
 use crate::settings::Settings;
 use crate::stages::agent::Agent;
-use crate::stages::baselines::{Clustering, cluster};
+use crate::stages::baselines::{ClusteringMethod, cluster};
 use crate::stages::body_map::{BodyMaps, ClassicalScaling, Improvement, MapError, scaled};
 use crate::stages::distance::{Distances, information_metric};
 use crate::stages::evaluate::{parts, score};
@@ -110,7 +110,7 @@ pub struct BaselineRecord {
     /// d of the body map.
     pub dimension: usize,
     /// The clustering.
-    pub method: Clustering,
+    pub method: ClusteringMethod,
     /// K, the number of clusters.
     pub clusters: usize,
     /// Adjusted Rand index.
@@ -129,7 +129,7 @@ pub enum StageError {
     Infer(#[from] InferenceError),
 }
 
-/// What a body felt in one simulation, and its truth.
+/// What a body sensed in one simulation, and its truth.
 #[derive(Debug, Clone)]
 pub struct Sensed {
     /// The pressures on its sensors.
@@ -181,13 +181,13 @@ pub fn sense_movement(trajectory: &Trajectory, settings: &Settings) -> Sensed {
 /// # Panics
 /// If `dims` is empty.
 pub fn map_sensed(
-    felt: &Sensed,
+    sensed: &Sensed,
     settings: &Settings,
     simulation: usize,
     dims: &[usize],
 ) -> Result<Mapped, StageError> {
-    let quantised = measure_distances(felt, &settings.quantise);
-    map_distances(felt, &quantised, settings, simulation, dims)
+    let quantised = measure_distances(sensed, &settings.quantise);
+    map_distances(sensed, &quantised, settings, simulation, dims)
 }
 
 /// The information metric between all sensors of a body, and how many of them showed one symbol throughout.
@@ -200,8 +200,8 @@ pub struct Metric {
 }
 
 /// Stages 3 and 4: quantises the pressures, and computes the distances between all sensors.
-pub fn measure_distances(felt: &Sensed, settings: &Quantise) -> Metric {
-    let symbols = quantise(&felt.tactile, settings);
+pub fn measure_distances(sensed: &Sensed, settings: &Quantise) -> Metric {
+    let symbols = quantise(&sensed.tactile, settings);
     Metric { distances: information_metric(&symbols), constant_sensors: symbols.constant_sensors().len() }
 }
 
@@ -213,7 +213,7 @@ pub fn measure_distances(felt: &Sensed, settings: &Quantise) -> Metric {
 /// # Panics
 /// If `dims` is empty.
 pub fn map_distances(
-    felt: &Sensed,
+    sensed: &Sensed,
     metric: &Metric,
     settings: &Settings,
     simulation: usize,
@@ -232,13 +232,13 @@ pub fn map_distances(
     };
     let facts = Facts {
         constant_sensors,
-        resolution: felt.resolution,
+        resolution: sensed.resolution,
         map_agreement: scaling.agreement(largest),
         eigenvalues: scaling.eigenvalues,
         improvements,
     };
     drop(scaled);
-    let body = Body { truth: felt.truth.clone(), maps, resolution: felt.resolution };
+    let body = Body { truth: sensed.truth.clone(), maps, resolution: sensed.resolution };
     Ok(Mapped { body, distances, facts })
 }
 
@@ -313,11 +313,11 @@ pub fn cluster_and_score(
 ) -> Vec<BaselineRecord> {
     let Settings { baselines, experiment, motion, .. } = settings;
     let map = body.maps.as_ref().map(|maps| maps.in_dims(dimension));
-    let conditions: Vec<(Clustering, usize)> = Clustering::ALL
+    let conditions: Vec<(ClusteringMethod, usize)> = ClusteringMethod::ALL
         .into_iter()
         .flat_map(|method| baselines.clusters.iter().map(move |&k| (method, k)))
         .collect();
-    let record = |(method, clusters): (Clustering, usize)| {
+    let record = |(method, clusters): (ClusteringMethod, usize)| {
         let labels = match &map {
             None => vec![0; body.truth.labels.len()],
             Some(map) => {

@@ -252,9 +252,10 @@ fn mixtures_of_extreme_priors_on_nearly_flat_maps_end_in_samples_or_in_an_error(
         (schema.chains, schema.sweeps, schema.components) = (1, 10, *[2, 10, 300].choose(rng).unwrap());
         schema.edge_weight =
             *[EdgeWeight::Literal, EdgeWeight::Pairwise, EdgeWeight::Collapsed].choose(rng).unwrap();
-        schema.start = *[Start::Uniform, Start::KMeans, Start::Single, Start::StickBreaking, Start::Apart]
-            .choose(rng)
-            .unwrap();
+        schema.start =
+            *[Start::Uniform, Start::KMeans, Start::Single, Start::StickBreaking, Start::Overdispersed]
+                .choose(rng)
+                .unwrap();
         schema.sampler =
             *[Sampler::Equations, Sampler::AuthorsCode, Sampler::SplitMerge].choose(rng).unwrap();
         schema.prior =

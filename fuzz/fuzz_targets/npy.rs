@@ -6,7 +6,7 @@
 use bodyschema::files::npy;
 use bodyschema::numerics::rng::stream;
 use bodyschema::settings::Settings;
-use bodyschema::stages::baselines::{Clustering, cluster};
+use bodyschema::stages::baselines::{ClusteringMethod, cluster};
 use bodyschema::stages::body_map::{BodyMap, ClassicalScaling, Fit, smacof};
 use bodyschema::stages::distance::{Distances, information_metric};
 use bodyschema::stages::quantise::{Quantise, Scheme, quantise};
@@ -72,7 +72,7 @@ fn infer_and_cluster(body_map: &BodyMap) {
     }
     // The clusterings take what the mixtures refuse, but squares must be finite.
     if body_map.points() <= FEW && body_map.coordinates.iter().all(|x| x.abs() < 1e100) {
-        for method in Clustering::ALL {
+        for method in ClusteringMethod::ALL {
             let labels = cluster(method, body_map, 3, 2, &mut stream(1, 1, "fuzz", 0));
             assert!(labels.len() == body_map.points() && labels.iter().all(|label| *label < body_map.points()));
         }

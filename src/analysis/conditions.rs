@@ -4,7 +4,7 @@ use super::bootstrap::Resamples;
 use super::statistics::{Estimate, mean, rate, spread};
 use crate::numerics::rng::stream;
 use crate::pipeline::{BaselineRecord, Condition, Record};
-use crate::stages::baselines::Clustering;
+use crate::stages::baselines::ClusteringMethod;
 
 /// All evaluated posterior samples of an experiment.
 ///
@@ -198,7 +198,7 @@ fn totals(groups: &[Vec<f64>]) -> Vec<(f64, usize)> {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BaselineEstimate {
     /// The clustering.
-    pub method: Clustering,
+    pub method: ClusteringMethod,
     /// K.
     pub clusters: usize,
     /// p.

@@ -6,7 +6,7 @@ use super::conditions::{BaselineEstimate, Conditions};
 use super::published::{At, Measure};
 use super::statistics::{Estimate, kruskal_wallis, mann_whitney, mean, quantile, smallest_adjusted};
 use crate::pipeline::{Condition, Record};
-use crate::stages::baselines::Clustering;
+use crate::stages::baselines::ClusteringMethod;
 use crate::stages::schema::{Model, Sampler};
 
 /// What a run offers to judge claims by.
@@ -147,7 +147,7 @@ fn baseline_share(baselines: &[BaselineEstimate], clusters: usize, threshold: f6
 
 /// For each clustering, by how much its ARI is higher with the right number of clusters than with another.
 fn baseline_loss(baselines: &[BaselineEstimate], right: usize, other: usize) -> Vec<Placed> {
-    let loss = |method: Clustering| {
+    let loss = |method: ClusteringMethod| {
         let average = |clusters: usize| {
             let of =
                 |baseline: &&BaselineEstimate| baseline.method == method && baseline.clusters == clusters;
@@ -157,7 +157,7 @@ fn baseline_loss(baselines: &[BaselineEstimate], right: usize, other: usize) -> 
         let loss = right.value.zip(other.value).map(|(right, other)| right - other);
         (method.name().to_owned(), Estimate::bare(loss, right.n))
     };
-    Clustering::ALL.into_iter().map(loss).collect()
+    ClusteringMethod::ALL.into_iter().map(loss).collect()
 }
 
 fn share(count: usize, n: usize) -> Estimate {

@@ -207,7 +207,7 @@ impl Choice for Start {
             Self::StickBreaking,
             "Weights by stick-breaking, labels drawn from them, means by k-means, identity covariances",
         ),
-        (Self::Apart, "Overdispersed starts: one chain after the other single, k-means, uniform"),
+        (Self::Overdispersed, "Overdispersed starts: one chain after the other single, k-means, uniform"),
     ];
 }
 
@@ -232,7 +232,7 @@ pub fn seconds(text: &str) -> Result<f64, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::stages::baselines::Clustering;
+    use crate::stages::baselines::ClusteringMethod;
 
     /// The names that a settings file may give, as the error for another one lists them.
     fn all_names<T: Choice>() -> Vec<String> {
@@ -247,7 +247,7 @@ mod tests {
 
     #[test]
     fn names_are_those_in_files() {
-        for method in Clustering::ALL {
+        for method in ClusteringMethod::ALL {
             assert_eq!(name(&method), method.name());
         }
         for model in Model::ALL {

@@ -9,7 +9,7 @@ use clap::Args;
 use super::options::Threads;
 use super::output::say;
 use crate::files::prepare_folder;
-use crate::study::{self, Design, DesignText, Only, Shard, plan};
+use crate::study::{self, Design, DesignText, Selection, Shard, plan};
 use crate::tasks::seeds::used_before;
 
 /// Runs many configurations of the experiments on shared simulations, and says by which the paper's claims hold.
@@ -34,7 +34,7 @@ pub struct Study {
     gather: bool,
     /// Run only this configuration (a number or a name), or those of this factor
     #[arg(long, value_name = "K", conflicts_with = "shard")]
-    only: Option<Only>,
+    only: Option<Selection>,
     /// Master seed, instead of the design's
     #[arg(long, value_name = "S")]
     seed: Option<u64>,

@@ -8,7 +8,7 @@
 //!
 //! * It never rests. Nearly all differences are other than 0, 7 of 8 even where values below 0 are cut; a sensor that now and then
 //!   is on the lee side of its part has fewer.
-//! * It has one size. Of Gaussian noise, the difference in the middle of all sizes is 2.1 times the lower quartile. Touch, which is
+//! * It has one size. Of Gaussian noise, the median absolute difference is 2.1 times the lower quartile. Touch, which is
 //!   nothing for a while and then grows large, has all sizes.
 //! * It has no memory. Two differences that share no sample, three samples apart, have the same sign half the time; of a smooth
 //!   movement, or of one that rings from step to step, they have it more often.
@@ -17,7 +17,7 @@
 //! without noise has all three marks, and every sensor with noise of 0.01 or 0.1 of its root mean square has them. Any one mark alone
 //! fails: where joints rest for long, few differences are left, and they may well have one size.
 //!
-//! The size in the middle is 1.0 to 1.2 standard deviations of the noise where values below 0 are cut, and 1.65 where they are not.
+//! The median is 1.0 to 1.2 standard deviations of the noise where values below 0 are cut, and 1.65 where they are not.
 
 mod smooth;
 
@@ -26,18 +26,18 @@ use rayon::prelude::*;
 use self::smooth::smooth;
 use crate::stages::sense::Tactile;
 
-/// The largest ratio of the middle to the lower quartile that is noise.
-const EVEN: f64 = 4.0;
+/// Largest ratio of the median to the lower quartile of absolute differences that is noise.
+const MAX_MEDIAN_TO_QUARTILE: f64 = 4.0;
 /// The least share of the differences that are other than 0, if it is noise.
-const RESTLESS: f64 = 0.75;
+const MIN_NONZERO_SHARE: f64 = 0.75;
 /// How far the share of equal signs may lie from a half.
-const FORGETFUL: f64 = 0.2;
-/// Noise seldom exceeds so many times its middle second difference.
-const TIMES: f32 = 4.0;
+const MAX_SIGN_IMBALANCE: f64 = 0.2;
+/// Noise seldom exceeds so many times its median absolute second difference.
+const NOISE_LIMIT: f32 = 4.0;
 /// Fewer second differences than these tell nothing of noise.
-const FEWEST: usize = 100;
+const MIN_DIFFERENCES: usize = 100;
 /// A sensor of which fewer than one sample in so many exceeds its noise has levels, such as on and off, and no noise.
-const ONE_IN: usize = 1000;
+const MIN_SIGNAL_ONE_IN: usize = 1000;
 
 /// The pressures above the noise, and how many sensors have noise.
 pub fn above_noise(mut tactile: Tactile) -> (Tactile, usize) {
@@ -51,12 +51,12 @@ pub fn above_noise(mut tactile: Tactile) -> (Tactile, usize) {
     (tactile, noisy)
 }
 
-/// The middle of the sizes of second differences of a series with noise; `None` if it has none.
+/// The median absolute second difference of a series with noise; `None` if it has none.
 fn size(series: &[f32]) -> Option<f32> {
     let differences: Vec<f32> = series.windows(3).map(|three| three[0] - 2.0 * three[1] + three[2]).collect();
     let mut sizes: Vec<f32> =
         differences.iter().map(|difference| difference.abs()).filter(|size| *size > 0.0).collect();
-    if sizes.len() < FEWEST || (sizes.len() as f64) < RESTLESS * differences.len() as f64 {
+    if sizes.len() < MIN_DIFFERENCES || (sizes.len() as f64) < MIN_NONZERO_SHARE * differences.len() as f64 {
         return None;
     }
     let (pairs, alike) = differences
@@ -64,14 +64,16 @@ fn size(series: &[f32]) -> Option<f32> {
         .map(|four| four[0] * four[3])
         .filter(|product| *product != 0.0)
         .fold((0, 0), |(pairs, alike), product| (pairs + 1, alike + usize::from(product > 0.0)));
-    if (alike as f64 / f64::from(pairs) - 0.5).abs() > FORGETFUL {
+    if (alike as f64 / f64::from(pairs) - 0.5).abs() > MAX_SIGN_IMBALANCE {
         return None;
     }
     let middle = sizes.len() / 2;
     let (below, &mut size, _) = sizes.select_nth_unstable_by(middle, f32::total_cmp);
     let quartile = *below.select_nth_unstable_by(middle / 2, f32::total_cmp).1;
-    let left = series.iter().filter(|pressure| pressure.abs() >= TIMES * size).count();
-    (f64::from(size) < EVEN * f64::from(quartile) && left * ONE_IN >= series.len()).then_some(size)
+    let left = series.iter().filter(|pressure| pressure.abs() >= NOISE_LIMIT * size).count();
+    (f64::from(size) < MAX_MEDIAN_TO_QUARTILE * f64::from(quartile)
+        && left * MIN_SIGNAL_ONE_IN >= series.len())
+    .then_some(size)
 }
 
 #[cfg(test)]

@@ -40,7 +40,8 @@ impl Sense {
     }
 }
 
-/// Tactile pressures of M sensors at T times, Pa; never negative, never NaN.
+/// Tactile pressures of M sensors at T times, Pa. Those of [`sense`] are finite and not negative; a recording may have negative ones,
+/// and NaN where a value is missing.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tactile {
     /// T.

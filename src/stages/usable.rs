@@ -1,4 +1,4 @@
-//! Leave out sensors that tell nothing: those that are not numbers, and those that never change.
+//! Drop samples at which most sensors are missing, and sensors that are missing, dead or constant.
 //!
 //! In: [`Tactile`] pressures as a robot has them. Out: [`Usable`] pressures, and why each other sensor was left out.
 
@@ -8,7 +8,7 @@ use rayon::prelude::*;
 
 use crate::stages::sense::Tactile;
 
-/// Why a sensor tells nothing.
+/// Why a sensor is dropped.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Fault {
     /// A value is no finite number.
@@ -29,7 +29,7 @@ impl Display for Fault {
     }
 }
 
-/// The pressures that tell something.
+/// A recording without missing values, and what was dropped.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Usable {
     /// Their pressures.
@@ -44,7 +44,7 @@ pub struct Usable {
     pub samples: Vec<usize>,
 }
 
-/// Leaves out samples at which most sensors have no number, and then sensors that tell nothing.
+/// Drops samples at which most sensors are missing, and then sensors that are missing, dead or constant.
 pub fn usable(tactile: Tactile) -> Usable {
     let all = tactile.samples;
     let (tactile, samples) = without_lost_samples(tactile);
@@ -64,19 +64,19 @@ pub fn usable(tactile: Tactile) -> Usable {
     Usable { tactile: only(tactile, &sensors), sensors, dropped, lost_samples, samples }
 }
 
-/// The pressures without samples at which more than half of the sensors have no number, such as a frame that was lost, and the
-/// samples that are left. Whether sensors that have no number half of the time count there is what leaves more numbers: broken ones
-/// should not cost samples, and a slow skin, which has no numbers in most frames of a log, should not cost sensors. If no sample would
-/// be left, nothing is left out.
+/// The pressures without samples at which more than half of the sensors are missing, such as a lost frame, and the samples that are
+/// kept. Sensors that are missing in at least half of the samples are ignored in this count if that keeps more complete values: broken
+/// sensors should not cost samples, and a slow skin, which is missing in most frames of a log, should not cost sensors. If no sample
+/// would be kept, none is dropped.
 fn without_lost_samples(mut tactile: Tactile) -> (Tactile, Vec<usize>) {
     let (samples, sensors) = (tactile.samples, tactile.sensors());
     let gaps = |series: &[f32]| series.iter().filter(|pressure| !pressure.is_finite()).count();
     let gaps: Vec<usize> = tactile.pressures.par_chunks_exact(samples).map(gaps).collect();
-    let mut kept = shared(&tactile, &gaps, samples);
+    let mut kept = samples_with_quorum(&tactile, &gaps, samples);
     let half = samples.div_ceil(2) - 1;
     if gaps.iter().any(|gaps| *gaps > half) {
-        let other = shared(&tactile, &gaps, half);
-        if numbers(&tactile, &other) > numbers(&tactile, &kept) {
+        let other = samples_with_quorum(&tactile, &gaps, half);
+        if complete_values(&tactile, &other) > complete_values(&tactile, &kept) {
             kept = other;
         }
     }
@@ -95,8 +95,8 @@ fn without_lost_samples(mut tactile: Tactile) -> (Tactile, Vec<usize>) {
     (tactile, kept)
 }
 
-/// The samples at which at least half of the sensors with no more than `most` gaps have a number; `gaps` says how many each has.
-fn shared(tactile: &Tactile, gaps: &[usize], most: usize) -> Vec<usize> {
+/// The samples at which at least half of the sensors with no more than `most` gaps have a value; `gaps` says how many each has.
+fn samples_with_quorum(tactile: &Tactile, gaps: &[usize], most: usize) -> Vec<usize> {
     let mut missing = vec![0; tactile.samples];
     for (series, _) in tactile.series().zip(gaps).filter(|(_, gaps)| (1..=most).contains(*gaps)) {
         missing
@@ -108,8 +108,8 @@ fn shared(tactile: &Tactile, gaps: &[usize], most: usize) -> Vec<usize> {
     (0..tactile.samples).filter(|t| 2 * missing[*t] <= sensors).collect()
 }
 
-/// How many numbers are left of sensors that have one at all of these samples.
-fn numbers(tactile: &Tactile, samples: &[usize]) -> usize {
+/// Number of values of the sensors that have one at all of these samples.
+fn complete_values(tactile: &Tactile, samples: &[usize]) -> usize {
     let is_whole = |series: &&[f32]| samples.iter().all(|t| series[*t].is_finite());
     samples.len() * tactile.series().filter(is_whole).count()
 }

@@ -1,4 +1,4 @@
-//! Lay the settings of choices over each other, and write them in a line.
+//! Merge settings of several options, and write them in a line.
 
 use std::f64::consts::PI;
 

@@ -9,7 +9,7 @@ use toml::Table;
 
 use super::choices::{Gains, short};
 use super::extends::{BUNDLED, DesignText};
-use super::levels::{Draws, Level};
+use super::levels::{DrawCounts, Level};
 use crate::analysis::published::{Claim, Experiment, Measure};
 use crate::tasks::error::ExperimentError;
 
@@ -47,7 +47,7 @@ pub struct Design {
     pub vary: Option<Vary>,
     /// How many configurations are drawn from the factors.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub draws: Option<Draws>,
+    pub draws: Option<DrawCounts>,
     /// Sections of the page, in their order; without any, those that fit the configurations.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub sections: Vec<Section>,
@@ -62,10 +62,10 @@ pub struct Design {
     pub next: Option<Next>,
     /// The claims; without any, those of `reproduce/scored.toml`.
     #[serde(rename = "claim", default)]
-    pub claims: Vec<JudgedBy>,
-    /// Named configurations; changes are from the first.
+    pub claims: Vec<JudgedClaim>,
+    /// NamedConfiguration configurations; changes are from the first.
     #[serde(rename = "configuration", default, skip_serializing_if = "Vec::is_empty")]
-    pub configurations: Vec<Named>,
+    pub configurations: Vec<NamedConfiguration>,
     /// Open settings, and the values that are tried.
     #[serde(rename = "factor", default, skip_serializing_if = "Vec::is_empty")]
     pub factors: Vec<Factor>,
@@ -106,7 +106,7 @@ pub enum Section {
 /// A claim that configurations are judged by.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct JudgedBy {
+pub struct JudgedClaim {
     /// Its short name in `reproduce/published.toml`.
     pub id: String,
     /// The experiment that it is judged by.
@@ -124,7 +124,7 @@ pub struct JudgedBy {
 /// A named configuration.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Named {
+pub struct NamedConfiguration {
     /// Its name in tables and pictures.
     pub name: String,
     /// What it has instead of the base's values.
@@ -232,19 +232,19 @@ impl Design {
 }
 
 /// The claims of `reproduce/scored.toml`, with their weights in the score.
-fn scored() -> Vec<JudgedBy> {
+fn scored() -> Vec<JudgedClaim> {
     #[derive(Deserialize)]
     #[serde(deny_unknown_fields)]
     struct Scored {
         #[serde(rename = "claim")]
-        claims: Vec<JudgedBy>,
+        claims: Vec<JudgedClaim>,
     }
     let (_, text) = BUNDLED.iter().find(|(name, _)| *name == "scored").expect("it is bundled");
     let Scored { claims } = toml::from_str(text).expect("reproduce/scored.toml has claims; a test checks it");
     claims
 }
 
-impl JudgedBy {
+impl JudgedClaim {
     /// The claim.
     pub fn find<'a>(&self, claims: &'a [Claim]) -> Option<&'a Claim> {
         let same = |claim: &&Claim| claim.id == self.id && claim.experiments.contains(&self.experiment);

@@ -9,20 +9,20 @@ use std::collections::HashSet;
 use sobol_burley::sample;
 
 use super::design::{Design, Factor};
-use super::levels::{Draws, Level, Places};
+use super::levels::{DrawCounts, Level, SharedStages};
 
 /// A drawn configuration.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Drawn {
     /// What it shares.
-    pub places: Places,
+    pub places: SharedStages,
     /// The option of each factor of the design.
     pub options: Vec<usize>,
 }
 
 /// All drawn configurations, those that share a movement next to each other, no two alike.
-pub fn drawn(design: &Design, draws: Draws) -> Vec<Drawn> {
-    let Draws { movements, distances, maps, inferences } = draws;
+pub fn drawn(design: &Design, draws: DrawCounts) -> Vec<Drawn> {
+    let DrawCounts { movements, distances, maps, inferences } = draws;
     let mut all: Vec<Drawn> = Vec::new();
     let mut known = HashSet::new();
     for movement in 0..movements {
@@ -32,7 +32,7 @@ pub fn drawn(design: &Design, draws: Draws) -> Vec<Drawn> {
                     let options = options(design, [movement, distance, map, inference]);
                     if known.insert((movement, options.clone())) {
                         let places =
-                            Places { movement: movement + 1, distances: distance + 1, maps: map + 1 };
+                            SharedStages { movement: movement + 1, distances: distance + 1, maps: map + 1 };
                         all.push(Drawn { places, options });
                     }
                 }

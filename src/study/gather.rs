@@ -9,7 +9,7 @@ use super::page;
 use super::plan::Configuration;
 use super::ranking::Ranking;
 use super::results::{Gathering, Results};
-use super::work::{DESIGN, KEY, Work, check_design};
+use super::work::{DESIGN, KEY, StudyWork, check_design};
 use crate::files::checkpoint::Checkpoints;
 use crate::files::manifest::Manifest;
 use crate::files::result_folder::ResultFolder;
@@ -34,7 +34,7 @@ pub fn gather(
 ) -> Result<(), ExperimentError> {
     let mut folder = ResultFolder::new(out);
     check_design(text, out)?;
-    let work = Work::new(plan, Checkpoints::silent(out, &KEY));
+    let work = StudyWork::new(plan, Checkpoints::silent(out, &KEY));
     let seed = design.seed;
     let mut gathering = Gathering::new(design);
     work.outcomes(out, |at, outcome| gathering.add(&plan[at], &outcome))?;

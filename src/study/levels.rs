@@ -5,8 +5,8 @@ use serde::{Deserialize, Serialize};
 /// How many are drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Draws {
-    /// Draws of the factors at the level of the movement.
+pub struct DrawCounts {
+    /// DrawCounts of the factors at the level of the movement.
     pub movements: usize,
     /// For each movement, draws of the factors at the level of the distances.
     pub distances: usize,
@@ -21,7 +21,7 @@ fn one() -> usize {
     1
 }
 
-impl Draws {
+impl DrawCounts {
     /// Configurations at most, if that is a number.
     pub fn count(self) -> Option<usize> {
         let Self { movements, distances, maps, inferences } = self;
@@ -43,9 +43,9 @@ pub enum Level {
     Inference,
 }
 
-/// What a configuration shares with others: those with the same number have the same movement, distances or body maps.
+/// Numbers of the movement, the matrix of distances and the body maps of a configuration; those with the same number share it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Places {
+pub struct SharedStages {
     /// Number of the movement, from 1.
     pub movement: usize,
     /// Number of the matrix of distances, from 1.

@@ -1,4 +1,4 @@
-//! List the configurations of a design.
+//! Plan a study: list its configurations, named, one at a time around a base, as a full grid, or drawn evenly.
 
 use std::str::FromStr;
 
@@ -7,7 +7,7 @@ use toml::Table;
 use super::choices::{flat, merge};
 use super::design::{BASE, Choice, Design, Factor, Vary};
 use super::draw::drawn;
-use super::levels::Places;
+use super::levels::SharedStages;
 use crate::settings::Settings;
 use crate::tasks::error::ExperimentError;
 
@@ -19,7 +19,7 @@ pub struct Configuration {
     /// Its name.
     pub name: String,
     /// What it shares with others.
-    pub places: Places,
+    pub places: SharedStages,
     /// The label of the option of each factor of the design; empty where it has the base's value.
     pub labels: Vec<String>,
     /// What it has instead of the base's values, gains computed.
@@ -28,11 +28,11 @@ pub struct Configuration {
     pub settings: Settings,
 }
 
-/// Which configurations are run: those of a number, a name, or a factor.
+/// The configurations that `--only` selects: those of a number, a name, or a factor.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Only(String);
+pub struct Selection(String);
 
-impl FromStr for Only {
+impl FromStr for Selection {
     type Err = std::convert::Infallible;
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {
@@ -64,7 +64,7 @@ pub fn plan(design: &Design) -> Result<Vec<Configuration>, ExperimentError> {
                     .map(|choice| choice.label.as_str())
                     .collect::<Vec<_>>()
                     .join("; ");
-                configuration(design, at, name, alone(at), design.seed, &choices)
+                configuration(design, at, name, on_shared_simulations(at), design.seed, &choices)
             });
             made.collect()
         }
@@ -80,7 +80,7 @@ pub fn plan(design: &Design) -> Result<Vec<Configuration>, ExperimentError> {
             }
             let made = all.into_iter().enumerate();
             made.map(|(at, (name, choices))| {
-                configuration(design, at, name, alone(at), design.seed, &choices)
+                configuration(design, at, name, on_shared_simulations(at), design.seed, &choices)
             })
             .collect()
         }
@@ -92,8 +92,14 @@ pub fn plan(design: &Design) -> Result<Vec<Configuration>, ExperimentError> {
                     settings: named.settings.clone(),
                     gains: None,
                 };
-                let made =
-                    configuration(design, at, named.name.clone(), alone(at), design.seed, &[Some(&choice)])?;
+                let made = configuration(
+                    design,
+                    at,
+                    named.name.clone(),
+                    on_shared_simulations(at),
+                    design.seed,
+                    &[Some(&choice)],
+                )?;
                 Ok(Configuration { labels: Vec::new(), ..made })
             });
             made.collect()
@@ -104,8 +110,8 @@ pub fn plan(design: &Design) -> Result<Vec<Configuration>, ExperimentError> {
 }
 
 /// Configurations on the same simulations: nothing is known beforehand of which distances and maps they share.
-fn alone(at: usize) -> Places {
-    Places { movement: 1, distances: at + 1, maps: at + 1 }
+fn on_shared_simulations(at: usize) -> SharedStages {
+    SharedStages { movement: 1, distances: at + 1, maps: at + 1 }
 }
 
 /// The options of a drawn configuration or of one of a grid.
@@ -129,7 +135,7 @@ fn configuration(
     design: &Design,
     at: usize,
     name: String,
-    places: Places,
+    places: SharedStages,
     seed: u64,
     choices: &[Option<&Choice>],
 ) -> Result<Configuration, ExperimentError> {
@@ -172,7 +178,7 @@ fn check(design: &Design, all: &[Configuration]) -> Result<(), ExperimentError> 
     }
 }
 
-impl Only {
+impl Selection {
     /// The configurations that it names, after the first, from which changes are measured; numbers stay those of the whole
     /// design.
     ///

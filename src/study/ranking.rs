@@ -3,7 +3,7 @@
 use serde::Serialize;
 use toml::Table;
 
-use super::design::{Design, JudgedBy, Named, Section};
+use super::design::{Design, JudgedClaim, NamedConfiguration, Section};
 use super::plan::plan;
 use super::results::{ClaimRow, Results};
 use crate::analysis::claims::Verdict;
@@ -40,7 +40,7 @@ pub struct Ranking {
 impl Ranking {
     /// Of a finished study. Of equal scores the earlier configuration stays first.
     pub fn of(results: &Results) -> Self {
-        let scored: Vec<(usize, &JudgedBy)> = scored(&results.design);
+        let scored: Vec<(usize, &JudgedClaim)> = scored(&results.design);
         let mut rows: Vec<RankRow> = Vec::new();
         for (place, one) in results.configurations.iter().enumerate() {
             let claims = results.claims_of(place);
@@ -86,8 +86,10 @@ impl Ranking {
         }
         if let Some(next) = &results.design.next {
             let go_on = self.rows.iter().take(next.keep);
-            let configurations: Vec<Named> = go_on
-                .filter_map(|row| Some(Named { name: row.name.clone(), settings: changes(row)? }))
+            let configurations: Vec<NamedConfiguration> = go_on
+                .filter_map(|row| {
+                    Some(NamedConfiguration { name: row.name.clone(), settings: changes(row)? })
+                })
                 .collect();
             let mut settings = results.design.settings.clone();
             super::choices::merge(&mut settings, &next.settings);
@@ -118,12 +120,12 @@ fn in_toml(table: &Table) -> String {
 }
 
 /// The claims that count, with their places in the design.
-pub fn scored(design: &Design) -> Vec<(usize, &JudgedBy)> {
+pub fn scored(design: &Design) -> Vec<(usize, &JudgedClaim)> {
     design.claims.iter().enumerate().filter(|(_, judged)| judged.weight.is_some()).collect()
 }
 
 /// 1 within the accepted range, less outside, 0 where there is nothing to judge.
-fn credit(judged: &JudgedBy, row: &ClaimRow) -> f64 {
+fn credit(judged: &JudgedClaim, row: &ClaimRow) -> f64 {
     let (Some(value), Some(slack)) = (row.value, judged.slack) else { return 0.0 };
     let outside = (row.accepted_low - value).max(value - row.accepted_high).max(0.0);
     (1.0 - outside / slack).max(0.0)
@@ -137,7 +139,7 @@ mod tests {
 
     #[test]
     fn credit_is_full_within_the_range_and_falls_to_nothing_outside() {
-        let judged = JudgedBy {
+        let judged = JudgedClaim {
             id: "tree-accuracy".to_owned(),
             experiment: Experiment::Exp1,
             label: String::new(),

@@ -6,7 +6,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
-use super::design::{COLUMNS, Design, JudgedBy, Section};
+use super::design::{COLUMNS, Design, JudgedClaim, Section};
 use super::measures::{MeasureRow, Measured};
 use super::outcome::Outcome;
 use super::plan::Configuration;
@@ -169,7 +169,7 @@ impl Gathering {
 
 fn claim_row(
     configuration: &Configuration,
-    judged: &JudgedBy,
+    judged: &JudgedClaim,
     claim: &Claim,
     own: &Evidence,
     first: Option<&Evidence>,

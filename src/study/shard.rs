@@ -1,8 +1,8 @@
-//! Cut the work of a study into parts that can run on different machines.
+//! A shard I/N of the work of a study: every N-th piece of a list, for one of several machines.
 
 use std::str::FromStr;
 
-/// A part of the work: the `index`-th of `of`, from 1.
+/// Every `of`-th piece of the work, beginning with the `index`-th, from 1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Shard {
     index: usize,

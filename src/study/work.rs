@@ -20,13 +20,13 @@ use crate::pipeline::{Condition, Record};
 use crate::settings::Settings;
 use crate::stages::schema::Model;
 use crate::stages::simulate::Resolution;
-use crate::tasks::batch::{Batch, Found, Outcome as TaskOutcome};
+use crate::tasks::batch::{Batch, Outcome as TaskOutcome, TaskOutput};
 use crate::tasks::cache::Keys;
 use crate::tasks::error::ExperimentError;
 use crate::tasks::progress::progress;
 use crate::tasks::task::{Keep, Task, by_movement};
 
-/// What results depend on beside what the names of tasks say: nothing but the program.
+/// Key of the checkpoints. The names of tasks already hash the settings that their results depend on.
 pub const KEY: &str = "study";
 
 /// Where the design is kept beside the results.
@@ -39,7 +39,7 @@ pub const DESIGN: &str = "design.toml";
 /// If `out` holds results of another design, or a file cannot be written.
 pub fn run(text: &str, plan: &[Configuration], shard: Shard, out: &Path) -> Result<(), ExperimentError> {
     keep_design(text, out)?;
-    let work = Work::new(plan, Checkpoints::new(out, &KEY));
+    let work = StudyWork::new(plan, Checkpoints::new(out, &KEY));
     let left: Vec<&Movement> =
         work.of_shard(shard).into_iter().filter(|movement| !work.is_finished(movement)).collect();
     let groups: Vec<Vec<Task>> = left.iter().map(|movement| movement.tasks.clone()).collect();
@@ -53,7 +53,7 @@ pub fn run(text: &str, plan: &[Configuration], shard: Shard, out: &Path) -> Resu
         }
         Ok(())
     };
-    Batch { out, checkpoints: &work.checkpoints, bar: &bar }.side_by_side(&groups, &keep)?;
+    Batch { out, checkpoints: &work.checkpoints, bar: &bar }.run_groups(&groups, &keep)?;
     bar.finish_and_clear();
     Ok(())
 }
@@ -89,11 +89,11 @@ pub fn check_design(text: &str, out: &Path) -> Result<(), ExperimentError> {
 }
 
 /// All work of some configurations, by movement.
-pub struct Work {
+pub struct StudyWork {
     checkpoints: Checkpoints,
     movements: Vec<Movement>,
     /// Of each configuration: its tasks, with the movement that each belongs to and its p.
-    of: Vec<Vec<(usize, String, f64)>>,
+    tasks_of: Vec<Vec<(usize, String, f64)>>,
 }
 
 /// A movement and what is inferred from it.
@@ -104,28 +104,28 @@ struct Movement {
     tasks: Vec<Task>,
 }
 
-/// What a movement gave: of each task, by name.
-type Kept = BTreeMap<String, Result<Gave, String>>;
+/// The stored results of a movement: of each task, by its name; a failure has a reason.
+type MovementResults = BTreeMap<String, Result<TaskResult, String>>;
 
-/// What a task gave.
+/// The results of one task, as a checkpoint stores them.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-struct Gave {
+struct TaskResult {
     resolution: Resolution,
-    samples: Vec<Samples>,
+    samples: Vec<StoredSamples>,
 }
 
 /// The samples of a condition, without what all have in common.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-struct Samples {
+struct StoredSamples {
     simulation: usize,
     condition: Condition,
-    samples: Vec<CompactSample>,
+    samples: Vec<StoredSample>,
 }
 
 /// Chain, sweep, parts, log posterior, ARI, whether it is eligible, and whether its tree is right.
-type CompactSample = (usize, usize, usize, Option<f64>, f64, bool, bool);
+type StoredSample = (usize, usize, usize, Option<f64>, f64, bool, bool);
 
-impl Work {
+impl StudyWork {
     /// The work of some configurations, and what was finished of it.
     pub fn new(plan: &[Configuration], checkpoints: Checkpoints) -> Self {
         let (mut tasks, mut of) = (Vec::new(), Vec::new());
@@ -158,7 +158,7 @@ impl Work {
         Self {
             checkpoints,
             movements: groups.iter().map(movement).collect(),
-            of: of.into_iter().map(|range| range.map(place).collect()).collect(),
+            tasks_of: of.into_iter().map(|range| range.map(place).collect()).collect(),
         }
     }
 
@@ -173,7 +173,7 @@ impl Work {
             .collect()
     }
 
-    fn recall(&self, movement: &Movement) -> Kept {
+    fn recall(&self, movement: &Movement) -> MovementResults {
         self.checkpoints.recall(&movement.name).unwrap_or_default()
     }
 
@@ -186,7 +186,7 @@ impl Work {
     fn keep(&self, movement: &Movement, outcomes: Vec<TaskOutcome>) -> Result<(), FileError> {
         let mut kept = self.recall(movement);
         for (task, outcome) in movement.tasks.iter().zip(outcomes) {
-            kept.insert(task.name.clone(), outcome.map(Gave::of));
+            kept.insert(task.name.clone(), outcome.map(TaskResult::of));
         }
         self.checkpoints.keep(&movement.name, &kept)?;
         movement.tasks.iter().try_for_each(|task| self.checkpoints.forget(&task.name))
@@ -206,11 +206,11 @@ impl Work {
             return Err(FileError::new(&out.join("checkpoints"), message).into());
         }
         let mut last_user = HashMap::new();
-        for (at, tasks) in self.of.iter().enumerate() {
+        for (at, tasks) in self.tasks_of.iter().enumerate() {
             last_user.extend(tasks.iter().map(|(movement, ..)| (*movement, at)));
         }
-        let mut held: HashMap<usize, Kept> = HashMap::new();
-        for (at, tasks) in self.of.iter().enumerate() {
+        let mut held: HashMap<usize, MovementResults> = HashMap::new();
+        for (at, tasks) in self.tasks_of.iter().enumerate() {
             let mut outcome = Outcome::default();
             for (movement, name, coordination) in tasks {
                 let kept = held.entry(*movement).or_insert_with(|| self.recall(&self.movements[*movement]));
@@ -241,9 +241,9 @@ impl Work {
     }
 }
 
-impl Gave {
-    fn of(found: Found) -> Self {
-        let mut samples: Vec<Samples> = Vec::new();
+impl TaskResult {
+    fn of(found: TaskOutput) -> Self {
+        let mut samples: Vec<StoredSamples> = Vec::new();
         for record in found.records {
             let Record {
                 simulation, chain, sweep, parts, log_posterior, ari, eligible, tree_correct, ..
@@ -251,7 +251,7 @@ impl Gave {
             let condition = record.condition();
             if samples.last().is_none_or(|last| (last.simulation, last.condition) != (simulation, condition))
             {
-                samples.push(Samples { simulation, condition, samples: Vec::new() });
+                samples.push(StoredSamples { simulation, condition, samples: Vec::new() });
             }
             let last = samples.last_mut().expect("it was added");
             last.samples.push((chain, sweep, parts, log_posterior, ari, eligible, tree_correct));
@@ -260,7 +260,7 @@ impl Gave {
     }
 
     fn records(&self) -> impl Iterator<Item = Record> + '_ {
-        self.samples.iter().flat_map(|Samples { simulation, condition, samples }| {
+        self.samples.iter().flat_map(|StoredSamples { simulation, condition, samples }| {
             let Condition { model, coordination, dimension } = *condition;
             samples.iter().map(move |&(chain, sweep, parts, log_posterior, ari, eligible, tree_correct)| {
                 Record {

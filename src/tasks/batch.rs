@@ -26,7 +26,7 @@ use crate::stages::simulate::{Resolution, Trajectory};
 
 /// What a task found.
 #[derive(Debug, Clone, Default)]
-pub struct Found {
+pub struct TaskOutput {
     /// All draws, evaluated, by condition.
     pub records: Vec<Record>,
     /// Of each condition the draw of highest log posterior.
@@ -44,7 +44,7 @@ pub struct Found {
 }
 
 /// What a task found, or why it failed.
-pub type Outcome = Result<Found, String>;
+pub type Outcome = Result<TaskOutput, String>;
 
 /// Runs tasks whose results go to one folder.
 pub struct Batch<'a> {
@@ -57,7 +57,7 @@ pub struct Batch<'a> {
 }
 
 /// Stages 1 to 5 of a task, with what an earlier one made of the same settings.
-type Map<'a> = &'a mut dyn FnMut() -> Result<Mapped, String>;
+type ComputeMaps<'a> = &'a mut dyn FnMut() -> Result<Mapped, String>;
 
 /// Why a task stops: it fails, which is an outcome, or a file cannot be written, which ends the run.
 enum Stop {
@@ -88,7 +88,7 @@ impl Batch<'_> {
     ///
     /// # Errors
     /// If a file cannot be written.
-    pub fn one_by_one(&self, tasks: &[Task]) -> Result<Vec<Outcome>, ExperimentError> {
+    pub fn run_in_order(&self, tasks: &[Task]) -> Result<Vec<Outcome>, ExperimentError> {
         let progress: Vec<_> = tasks.iter().map(|_| TaskProgress::new(self.bar)).collect();
         std::thread::scope(|scope| {
             let mut all = Vec::with_capacity(tasks.len());
@@ -106,8 +106,8 @@ impl Batch<'_> {
                 };
                 let mut map =
                     || shared.map(&task.settings, task.simulation, &task.dimensions(), &mut simulate);
-                let outcome = match self.try_to_finish(task, &mut map, progress) {
-                    Ok(found) => Ok(Found { beginning: begun, ..found }),
+                let outcome = match self.run_task(task, &mut map, progress) {
+                    Ok(found) => Ok(TaskOutput { beginning: begun, ..found }),
                     Err(Stop::Failed(reason)) if task.keep == Keep::Nothing => Err(reason),
                     Err(Stop::Failed(reason)) => return Err(ExperimentError::Stage(reason)),
                     Err(Stop::File(error)) => return Err(error.into()),
@@ -128,7 +128,7 @@ impl Batch<'_> {
     ///
     /// # Errors
     /// If a file cannot be written, or `keep` fails.
-    pub fn side_by_side(
+    pub fn run_groups(
         &self,
         groups: &[Vec<Task>],
         keep: &(dyn Fn(usize, Vec<Outcome>) -> Result<(), FileError> + Sync),
@@ -165,7 +165,7 @@ impl Batch<'_> {
         let failed = format!("{}/failed", task.name);
         let outcome = match self.checkpoints.recall(&failed) {
             Some(reason) => Err(reason),
-            None => match self.try_to_finish(task, &mut map, &progress) {
+            None => match self.run_task(task, &mut map, &progress) {
                 Ok(found) => Ok(found),
                 Err(Stop::File(error)) => return Err(error),
                 Err(Stop::Failed(reason)) => {
@@ -178,8 +178,8 @@ impl Batch<'_> {
         Ok(outcome)
     }
 
-    fn try_to_finish(&self, task: &Task, map: Map, progress: &TaskProgress) -> Result<Found, Stop> {
-        let mut found = Found::default();
+    fn run_task(&self, task: &Task, map: ComputeMaps, progress: &TaskProgress) -> Result<TaskOutput, Stop> {
+        let mut found = TaskOutput::default();
         let mut body = None;
         if task.keep != Keep::Nothing {
             let files = ArtifactFiles { out: self.out, checkpoints: self.checkpoints, name: &task.name };
@@ -212,7 +212,7 @@ impl Batch<'_> {
         task: &Task,
         condition: Condition,
         body: &mut Option<Body>,
-        map: Map,
+        map: ComputeMaps,
         progress: &TaskProgress,
     ) -> Result<Inference, Stop> {
         let name = format!("{}/{}-{}", task.name, condition.model.name(), condition.dimension);

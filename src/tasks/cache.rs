@@ -35,15 +35,15 @@ fn text(key: &impl Serialize) -> String {
 }
 
 /// The last result of a stage, and what it depended on.
-struct Last<T>(Option<(String, T)>);
+struct LastResult<T>(Option<(String, T)>);
 
-impl<T> Default for Last<T> {
+impl<T> Default for LastResult<T> {
     fn default() -> Self {
         Self(None)
     }
 }
 
-impl<T> Last<T> {
+impl<T> LastResult<T> {
     /// The last result if it has this key, or else a new one.
     fn get(&mut self, key: String, make: impl FnOnce() -> T) -> &T {
         if self.0.as_ref().is_none_or(|(last, _)| *last != key) {
@@ -58,10 +58,10 @@ impl<T> Last<T> {
 /// The last results of the stages, for the tasks that come next: half a gigabyte at full size.
 #[derive(Default)]
 pub struct StageCache {
-    movement: Last<Result<Trajectory, String>>,
-    felt: Last<Sensed>,
-    metric: Last<Metric>,
-    mapped: Last<Result<Mapped, String>>,
+    movement: LastResult<Result<Trajectory, String>>,
+    sensed: LastResult<Sensed>,
+    metric: LastResult<Metric>,
+    mapped: LastResult<Result<Mapped, String>>,
 }
 
 impl StageCache {
@@ -79,10 +79,10 @@ impl StageCache {
         let keys = Keys::of(settings, simulation, dims);
         let movement = self.movement.get(keys.movement, simulate);
         let trajectory = movement.as_ref().map_err(String::clone)?;
-        let felt = self.felt.get(keys.pressures, || sense_movement(trajectory, settings));
-        let metric = self.metric.get(keys.distances, || measure_distances(felt, &settings.quantise));
+        let sensed = self.sensed.get(keys.pressures, || sense_movement(trajectory, settings));
+        let metric = self.metric.get(keys.distances, || measure_distances(sensed, &settings.quantise));
         let mapped = self.mapped.get(keys.maps, || {
-            map_distances(felt, metric, settings, simulation, dims).map_err(|error| error.to_string())
+            map_distances(sensed, metric, settings, simulation, dims).map_err(|error| error.to_string())
         });
         mapped.clone()
     }

@@ -5,7 +5,7 @@ use crate::analysis::conditions::{BaselineEstimate, Conditions};
 use crate::analysis::published::figures;
 use crate::analysis::statistics::mean;
 use crate::pipeline::Record;
-use crate::stages::baselines::Clustering;
+use crate::stages::baselines::ClusteringMethod;
 use crate::stages::schema::{Model, Sampler};
 
 fn record(model: Model, dimension: usize, parts: usize, ari: f64, tree_correct: bool) -> Record {
@@ -233,7 +233,7 @@ fn clusterings_are_compared_over_numbers_of_clusters() {
     };
     let all = |at_ten: f64| {
         let of = |method| [baseline(method, 3, 0.6), baseline(method, 5, 0.9), baseline(method, 10, at_ten)];
-        Clustering::ALL.into_iter().flat_map(of).collect::<Vec<_>>()
+        ClusteringMethod::ALL.into_iter().flat_map(of).collect::<Vec<_>>()
     };
     let verdict = |id, at_ten| judge_with(id, &[], all(at_ten)).verdict;
     assert_eq!(verdict("ari-known-number", 0.7), Verdict::Reproduced);

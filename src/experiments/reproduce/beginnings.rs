@@ -3,7 +3,7 @@
 use super::run::Run;
 use crate::analysis::published::Experiment;
 use crate::stages::simulate::Trajectory;
-use crate::tasks::batch::Found;
+use crate::tasks::batch::TaskOutput;
 use crate::tasks::beginning::simulate_beginning;
 use crate::tasks::error::ExperimentError;
 use crate::tasks::task::Task;
@@ -36,7 +36,7 @@ impl Beginnings {
     ///
     /// # Errors
     /// If a simulation is unstable.
-    pub fn add(&mut self, tasks: &[Task], found: &mut [Found]) -> Result<(), ExperimentError> {
+    pub fn add(&mut self, tasks: &[Task], found: &mut [TaskOutput]) -> Result<(), ExperimentError> {
         for (task, found) in tasks.iter().zip(found).filter(|(task, _)| task.is_shown()) {
             let trajectory = match found.beginning.take() {
                 Some(kept) => kept,

@@ -30,7 +30,7 @@ use crate::settings::Settings;
 use crate::stages::agent::Agent;
 use crate::stages::schema::Model;
 use crate::stages::simulate::Resolution;
-use crate::tasks::batch::{Batch, Found, Outcome};
+use crate::tasks::batch::{Batch, Outcome, TaskOutput};
 use crate::tasks::error::ExperimentError;
 use crate::tasks::progress::progress;
 use crate::tasks::task::{Keep, Task};
@@ -63,7 +63,7 @@ pub fn reproduce(run: &Run) -> Result<Finished, ExperimentError> {
     let bar = progress(Batch::length(&all), "movement".to_owned());
     let batch = Batch { out: run.out, checkpoints: &checkpoints, bar: &bar };
     let mut beginnings = Beginnings::of_other_coordinations(run)?;
-    let (mut found, by_other) = apart(&all, batch.one_by_one(&all)?)?;
+    let (mut found, by_other) = apart(&all, batch.run_in_order(&all)?)?;
     bar.finish_and_clear();
     beginnings.add(&tasks, &mut found)?;
     for kept in found.iter_mut().filter_map(|found| found.kept.as_mut()) {
@@ -151,7 +151,7 @@ fn tasks(run: &Run) -> Vec<Task> {
 }
 
 /// What the tasks of the run found, and what became of those of the other interpretation, which alone may fail.
-fn apart(all: &[Task], outcomes: Vec<Outcome>) -> Result<(Vec<Found>, Vec<Outcome>), ExperimentError> {
+fn apart(all: &[Task], outcomes: Vec<Outcome>) -> Result<(Vec<TaskOutput>, Vec<Outcome>), ExperimentError> {
     let (run, other): (Vec<_>, Vec<_>) =
         all.iter().zip(outcomes).partition(|(task, _)| task.keep != Keep::Nothing);
     let found = run.into_iter().map(|(_, outcome)| outcome.map_err(ExperimentError::Stage));
@@ -161,7 +161,7 @@ fn apart(all: &[Task], outcomes: Vec<Outcome>) -> Result<(Vec<Found>, Vec<Outcom
 /// Writes all posterior samples, and in experiment 1 all clusterings, and returns them.
 fn write_samples(
     run: &Run,
-    found: &[Found],
+    found: &[TaskOutput],
     folder: &mut ResultFolder,
 ) -> Result<(Vec<Record>, Vec<BaselineRecord>), FileError> {
     let records: Vec<_> = found.iter().flat_map(|found| &found.records).copied().collect();
@@ -204,7 +204,7 @@ pub fn judge_all(
 fn write_figures(
     run: &Run,
     tasks: &[Task],
-    found: &[Found],
+    found: &[TaskOutput],
     beginnings: &Beginnings,
     evidence: &Evidence,
     folder: &mut ResultFolder,
@@ -258,13 +258,13 @@ fn manifest(
     run: &Run,
     preamble: &str,
     tasks: &[Task],
-    found: &[Found],
+    found: &[TaskOutput],
     rows: &[Row],
 ) -> Result<Manifest, FileError> {
     let settings = run.settings;
     let hash = |path: &Path| HashedFile::new(&path.display().to_string(), path);
     let inputs = run.settings_file.into_iter().map(hash).collect::<Result<_, _>>()?;
-    let body = |(task, found): (&Task, &Found)| -> Value {
+    let body = |(task, found): (&Task, &TaskOutput)| -> Value {
         json!({
             "coordination": task.settings.motion.coordination,
             "simulation": task.simulation,

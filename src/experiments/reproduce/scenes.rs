@@ -18,7 +18,7 @@ use crate::stages::agent::Agent;
 use crate::stages::schema::Model;
 use crate::stages::sense::sense;
 use crate::stages::simulate::Trajectory;
-use crate::tasks::batch::Found;
+use crate::tasks::batch::TaskOutput;
 use crate::tasks::task::Task;
 
 /// Writes a scene for each p, and returns their data, p rising.
@@ -28,7 +28,7 @@ use crate::tasks::task::Task;
 pub fn write(
     run: &Run,
     tasks: &[Task],
-    found: &[Found],
+    found: &[TaskOutput],
     beginnings: &Beginnings,
     folder: &mut ResultFolder,
 ) -> Result<Vec<Value>, FileError> {
@@ -54,7 +54,7 @@ pub fn made_anew(folder: &Path) -> Vec<String> {
 }
 
 /// What is shown of a simulation: how it begins, and its inference in the condition at this place of the task.
-fn scene(task: &Task, found: &Found, beginning: &Trajectory, at: usize, room: usize) -> Scene {
+fn scene(task: &Task, found: &TaskOutput, beginning: &Trajectory, at: usize, room: usize) -> Scene {
     let Settings { agent, skin, motion, sense: tactile_sense, .. } = &task.settings;
     let agent = Agent::new(agent, skin);
     let interval = tactile_sense.interval;

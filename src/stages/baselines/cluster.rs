@@ -35,7 +35,7 @@ impl Baselines {
 /// The method to cluster by.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Clustering {
+pub enum ClusteringMethod {
     /// Ward's method: merges the two clusters whose union adds the least to the sum of squares.
     Ward,
     /// k-means: the least sum of squares that Lloyd's algorithm finds.
@@ -44,7 +44,7 @@ pub enum Clustering {
     Gmm,
 }
 
-impl Clustering {
+impl ClusteringMethod {
     /// All three, in the order of figure 8a.
     pub const ALL: [Self; 3] = [Self::Ward, Self::KMeans, Self::Gmm];
 
@@ -65,16 +65,16 @@ impl Clustering {
 /// are no more clusters than different points; a mixture may also find fewer. Labels of clusters that are not found
 /// do not occur. The coordinates and their squares must be finite.
 pub fn cluster(
-    method: Clustering,
+    method: ClusteringMethod,
     map: &BodyMap,
     clusters: usize,
     restarts: usize,
     rng: &mut Stream,
 ) -> Vec<usize> {
     match method {
-        Clustering::Ward => ward(map, clusters),
-        Clustering::KMeans => k_means(map, clusters, restarts, rng).labels,
-        Clustering::Gmm => gmm(map, clusters, restarts, rng).labels,
+        ClusteringMethod::Ward => ward(map, clusters),
+        ClusteringMethod::KMeans => k_means(map, clusters, restarts, rng).labels,
+        ClusteringMethod::Gmm => gmm(map, clusters, restarts, rng).labels,
     }
 }
 

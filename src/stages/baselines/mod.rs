@@ -6,6 +6,6 @@ mod cluster;
 mod gmm;
 mod ward;
 
-pub use self::cluster::{Baselines, Clustering, cluster};
+pub use self::cluster::{Baselines, ClusteringMethod, cluster};
 pub use self::gmm::{MixtureFit, gmm, ridge};
 pub use self::ward::ward;

@@ -1,27 +1,27 @@
-//! Take noise off a series of pressures, and keep its steps.
+//! Smooth a series of pressures by local linear regression with adaptive windows, which keeps its steps.
 //!
-//! A movement is smooth for a while, and then another begins at once. So at each time a line goes through the longest stretch around
-//! it, or before it, or after it, that a line explains up to the noise (as Lepski 1991 chooses the width of a window), and its value
-//! counts. What is within the noise that such a value still has counts as no touch.
+//! A movement is smooth for a while, and then another begins at once. So at each time a line is fitted in the widest window around
+//! it, or before it, or after it, whose residuals are no larger than the noise (adaptive bandwidth: Lepski 1991), and its value
+//! counts. A value within its remaining noise counts as no touch.
 
-/// Times on each side of a stretch, the longest first.
-const REACHES: [usize; 3] = [10, 5, 2];
-/// Of the square of the middle second difference, what a line may leave for each degree of freedom: its square is 1 to 2.7 times the
-/// variance of the noise.
-const FITS: f64 = 1.5;
-/// Middle second differences below which a value is no touch: without a share of the noise, for what is cut at 0 has a mean, and for
-/// each standard deviation that is left of 1.
-const LIMIT: [f64; 2] = [0.5, 3.5];
+/// Half-widths of the windows in samples, the widest first.
+const HALF_WIDTHS: [usize; 3] = [10, 5, 2];
+/// Largest residual variance of a fit, over the square of the median second difference, which is 1 to 2.7 times the variance of the
+/// noise.
+const MAX_RESIDUAL: f64 = 1.5;
+/// Median second differences below which a value is no touch: a constant, since noise that is cut at 0 has a mean, and a multiple of
+/// the standard error of the value in units of the noise.
+const TOUCH_LIMIT: [f64; 2] = [0.5, 3.5];
 
 /// Puts lines in the place of pressures, and 0 where they are within the noise. `size` is the middle of the sizes of second differences.
 pub fn smooth(series: &mut [f32], size: f32) {
     let size = f64::from(size);
     let sums = sums(series);
-    let stretches = REACHES.map(Stretches::new);
-    let limit = |line: &Line| size * (LIMIT[0] + LIMIT[1] * line.deviation);
+    let windows = HALF_WIDTHS.map(Windows::new);
+    let limit = |line: &Line| size * (TOUCH_LIMIT[0] + TOUCH_LIMIT[1] * line.deviation);
     for (t, pressure) in series.iter_mut().enumerate() {
-        let line = stretches.iter().find_map(|around| around.line(&sums, t, FITS * size * size));
-        let line = line.unwrap_or(Line { value: f64::from(*pressure), left: 0.0, deviation: 1.0 });
+        let line = windows.iter().find_map(|around| around.line(&sums, t, MAX_RESIDUAL * size * size));
+        let line = line.unwrap_or(Line { value: f64::from(*pressure), residual: 0.0, deviation: 1.0 });
         *pressure = if line.value.abs() < limit(&line) { 0.0 } else { line.value as f32 };
     }
 }
@@ -36,49 +36,51 @@ fn sums(series: &[f32]) -> Vec<[f64; 3]> {
     sums
 }
 
-/// A line at a time.
+/// A fitted line at one time.
 struct Line {
     value: f64,
-    /// Squares that it leaves, for each degree of freedom.
-    left: f64,
-    /// Standard deviation of the value over that of the noise.
+    /// Residual variance: residual squares over degrees of freedom.
+    residual: f64,
+    /// Standard error of the value over the standard deviation of the noise.
     deviation: f64,
 }
 
-/// The stretches of one reach: around a time, before it, and after it.
-struct Stretches {
-    reach: usize,
-    around: Stretch,
-    before: Stretch,
-    after: Stretch,
+/// The windows of one half-width: around a time, before it, and after it.
+struct Windows {
+    half_width: usize,
+    around: Window,
+    before: Window,
+    after: Window,
 }
 
-impl Stretches {
-    fn new(reach: usize) -> Self {
-        let [around, before, after] = [(reach, reach), (reach, 0), (0, reach)].map(Stretch::new);
-        Self { reach, around, before, after }
+impl Windows {
+    fn new(half_width: usize) -> Self {
+        let [around, before, after] =
+            [(half_width, half_width), (half_width, 0), (0, half_width)].map(Window::new);
+        Self { half_width, around, before, after }
     }
 
-    /// The line around a time that leaves little enough; else, of the one before it and the one after it, the better one that does.
+    /// The fit around a time if its residual variance is at most `most`; else the better one of those before and after it, if any is.
     fn line(&self, sums: &[[f64; 3]], t: usize, most: f64) -> Option<Line> {
-        if t < self.reach || t + self.reach + 1 >= sums.len() {
+        if t < self.half_width || t + self.half_width + 1 >= sums.len() {
             return None;
         }
         let around = self.around.line(sums, t);
-        if around.left <= most {
+        if around.residual <= most {
             return Some(around);
         }
         let (before, after) = (self.before.line(sums, t), self.after.line(sums, t));
-        Some(if before.left < after.left { before } else { after }).filter(|line| line.left <= most)
+        Some(if before.residual < after.residual { before } else { after })
+            .filter(|line| line.residual <= most)
     }
 }
 
-/// What lines through as many times before and after the time that counts have in common: products are quicker than quotients.
-struct Stretch {
-    /// Times before and after.
+/// A window with so many samples before and after the time of the fit, and the constants of its regression.
+struct Window {
+    /// Samples before and after.
     sides: (usize, usize),
-    /// From the time in the middle to the one that counts.
-    off: f64,
+    /// From the middle of the window to the time of the fit.
+    offset: f64,
     /// 1 over the number of times.
     share: f64,
     /// The sum of squares of times about their middle, and 1 over it.
@@ -89,14 +91,14 @@ struct Stretch {
     deviation: f64,
 }
 
-impl Stretch {
+impl Window {
     fn new(sides: (usize, usize)) -> Self {
         let count = (sides.0 + sides.1 + 1) as f64;
         let spread = count * (count * count - 1.0) / 12.0;
-        let off = 0.5 * (sides.0 as f64 - sides.1 as f64);
-        let deviation = (1.0 / count + off * off / spread).sqrt();
+        let offset = 0.5 * (sides.0 as f64 - sides.1 as f64);
+        let deviation = (1.0 / count + offset * offset / spread).sqrt();
         let [share, freedom] = [1.0 / count, 1.0 / (count - 2.0)];
-        Self { sides, off, share, spread: [spread, 1.0 / spread], freedom, deviation }
+        Self { sides, offset, share, spread: [spread, 1.0 / spread], freedom, deviation }
     }
 
     /// The line of least squares, at the time that counts.
@@ -104,9 +106,13 @@ impl Stretch {
         let (from, to) = (sums[t - self.sides.0], sums[t + self.sides.1 + 1]);
         let [a, b, c] = [to[0] - from[0], to[1] - from[1], to[2] - from[2]];
         let mean = a * self.share;
-        let slope = (b - a * (t as f64 - self.off)) * self.spread[1];
-        let left = c - a * mean - slope * slope * self.spread[0];
-        Line { value: mean + slope * self.off, left: left.max(0.0) * self.freedom, deviation: self.deviation }
+        let slope = (b - a * (t as f64 - self.offset)) * self.spread[1];
+        let squares = c - a * mean - slope * slope * self.spread[0];
+        Line {
+            value: mean + slope * self.offset,
+            residual: squares.max(0.0) * self.freedom,
+            deviation: self.deviation,
+        }
     }
 }
 

@@ -1,4 +1,4 @@
-//! Take the roots of pressures: what a sensor says linearly of the motion of its part.
+//! Take the square roots of pressures: linear measurements of the motion of a part.
 //!
 //! A sensor at l with the outward normal n feels ρ (ṗ · n)² while it moves outward, and nothing otherwise. Its normal velocity
 //! ṗ · n is linear in the velocity and angular velocity of its part. So the root of a pressure is max(0, c · w), with loadings

@@ -212,7 +212,7 @@ pub fn start_labels(points: &Points, settings: &Schema, rng: &mut impl Rng) -> V
     match settings.start.of_chain(0) {
         Start::Uniform => (0..points.count).map(|_| rng.random_range(0..components)).collect(),
         Start::KMeans => lloyd(points, components, rng).labels,
-        Start::Single | Start::Apart => vec![0; points.count],
+        Start::Single | Start::Overdispersed => vec![0; points.count],
         Start::StickBreaking => labels_from(&stick(settings, rng), points.count, rng),
     }
 }

@@ -1,11 +1,11 @@
-//! Hold a draw: the state of a chain that is kept after a sweep.
+//! A posterior sample: the state of a chain that is kept after a sweep.
 
 use serde::{Deserialize, Serialize};
 
 use super::settings::Schema;
 use crate::stages::tree::Edge;
 
-/// One draw of a body schema: the state of a chain after a sweep (section 3).
+/// A posterior sample of a body schema: the state of a chain after a sweep (section 3).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Sample {
     /// Number of the chain, from 0.
@@ -22,7 +22,7 @@ pub struct Sample {
     pub log_posterior: Option<f64>,
 }
 
-/// The draw of highest log posterior; the first of equal ones.
+/// The posterior sample of highest log posterior; the first of equal ones.
 ///
 /// # Panics
 /// If `draws` is empty.
@@ -33,7 +33,7 @@ pub fn best(draws: &[Sample]) -> &Sample {
         .expect("draws must not be empty")
 }
 
-/// One draw for each chain, with all sensors in one component: the answer where no sensor differs from another, so that
+/// One sample for each chain, with all sensors in one component: the answer where no sensor differs from another, so that
 /// there is no body map to infer from.
 pub fn one_part(sensors: usize, settings: &Schema) -> Vec<Sample> {
     let draw = |chain| Sample {

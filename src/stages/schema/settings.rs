@@ -41,7 +41,7 @@ pub enum EdgeWeight {
     Collapsed,
 }
 
-/// What a chain starts with.
+/// How the labels of a chain are initialised.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Start {
@@ -53,15 +53,16 @@ pub enum Start {
     Single,
     /// Weights by stick-breaking, labels from them alone, means by k-means, and identity covariances.
     StickBreaking,
-    /// One chain after the other: all points in one component, k-means, uniform.
-    Apart,
+    /// Overdispersed starts, one chain after the other: all points in one component, k-means, uniform.
+    #[serde(rename = "apart")]
+    Overdispersed,
 }
 
 impl Start {
     /// What a chain of this number starts with.
     pub fn of_chain(self, chain: usize) -> Self {
         match self {
-            Self::Apart => [Self::Single, Self::KMeans, Self::Uniform][chain % 3],
+            Self::Overdispersed => [Self::Single, Self::KMeans, Self::Uniform][chain % 3],
             own => own,
         }
     }
@@ -79,7 +80,7 @@ pub enum Prior {
     InverseCovariance,
 }
 
-/// The sampler, and which reading of the paper it follows.
+/// The algorithm that samples the posterior: Gibbs sampling by the paper's equations or by the authors' code, or split–merge moves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Sampler {
@@ -102,7 +103,7 @@ impl Sampler {
     }
 }
 
-/// Which draws of a chain are kept.
+/// Which posterior samples of a chain are kept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Keep {
@@ -116,7 +117,7 @@ pub enum Keep {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Schema {
-    /// The reading of the paper that the sampler follows.
+    /// The algorithm that samples the posterior.
     pub sampler: Sampler,
     /// K, number of components of the weak-limit approximation.
     pub components: usize,

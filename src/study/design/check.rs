@@ -3,8 +3,8 @@
 use std::collections::HashSet;
 
 use super::super::choices::value_of;
-use super::super::levels::Draws;
-use super::{BASE, COLUMNS, Choice, Design, Factor, JudgedBy, Section, Vary};
+use super::super::levels::DrawCounts;
+use super::{BASE, COLUMNS, Choice, Design, Factor, JudgedClaim, Section, Vary};
 use crate::analysis::published::{Claim, claims};
 use crate::settings::Settings;
 
@@ -45,7 +45,7 @@ impl Design {
         if named != self.factors.is_empty() {
             return Err("[[factor]] goes with `vary` or [draws], and not with [[configuration]]".to_owned());
         }
-        let drawn = self.draws.map(Draws::count);
+        let drawn = self.draws.map(DrawCounts::count);
         if drawn == Some(Some(0)) {
             return Err(
                 "draws nothing: movements, distances, maps and inferences must be positive".to_owned()
@@ -140,7 +140,7 @@ impl Design {
     }
 }
 
-impl JudgedBy {
+impl JudgedClaim {
     /// Whether there is such a claim, and it has both or none of weight and slack.
     ///
     /// # Errors

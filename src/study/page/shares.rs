@@ -1,7 +1,7 @@
 //! The sections of shares, variance and curves: what all configurations of a grid or of draws say together.
 
 use super::super::evaluation::{Evaluation, ShareRow, TOGETHER, VarianceRow};
-use super::super::levels::Draws;
+use super::super::levels::DrawCounts;
 use super::super::results::Results;
 use crate::analysis::published::{HEADLINE, Unit};
 use crate::report::markdown::{row, rule};
@@ -164,8 +164,8 @@ fn with_ends(share: Option<f64>, ends: Option<(f64, f64)>, open: &str, close: &s
 }
 
 /// How configurations were drawn.
-fn drawn(draws: Draws) -> String {
-    let Draws { movements, distances, maps, inferences } = draws;
+fn drawn(draws: DrawCounts) -> String {
+    let DrawCounts { movements, distances, maps, inferences } = draws;
     format!(
         "There are {movements} movements, of each {distances} matrices of distances, of each {maps} kinds of body map, of each \
          {inferences} ways to infer. They are drawn evenly from all combinations of the options below, by a scrambled Sobol sequence. \

@@ -1,6 +1,6 @@
 //! The sections of values and of changes: a table each, with a row for each configuration and a column for each claim.
 
-use super::super::design::{Design, JudgedBy};
+use super::super::design::{Design, JudgedClaim};
 use super::super::results::{ClaimRow, Results};
 use crate::analysis::claims::Verdict;
 use crate::analysis::published::{Claim, Unit, claims};
@@ -57,8 +57,8 @@ pub fn changes(results: &Results) -> Vec<String> {
 }
 
 /// The head of a table with a column for each claim.
-fn header(judged: &[JudgedBy]) -> [String; 2] {
-    let labels = judged.iter().map(JudgedBy::name);
+fn header(judged: &[JudgedClaim]) -> [String; 2] {
+    let labels = judged.iter().map(JudgedClaim::name);
     [row(std::iter::once(String::new()).chain(labels)), rule(judged.len() + 1)]
 }
 
@@ -82,7 +82,7 @@ fn rows(
 }
 
 /// The name of each picture, and the claims that it shows.
-pub fn pictures(design: &Design) -> impl Iterator<Item = (String, &[JudgedBy])> {
+pub fn pictures(design: &Design) -> impl Iterator<Item = (String, &[JudgedClaim])> {
     /// Panels that the width of a picture has room for.
     const PANELS: usize = 4;
     let chunks = design.claims.chunks(PANELS).enumerate();
@@ -90,9 +90,9 @@ pub fn pictures(design: &Design) -> impl Iterator<Item = (String, &[JudgedBy])> 
 }
 
 /// Panels and lines of the picture of some claims.
-pub fn picture(results: &Results, shown: &[JudgedBy]) -> (Vec<Column>, Vec<Line>) {
+pub fn picture(results: &Results, shown: &[JudgedClaim]) -> (Vec<Column>, Vec<Line>) {
     let published = claims();
-    let column = |judged: &JudgedBy| {
+    let column = |judged: &JudgedClaim| {
         let claim = judged.find(&published).expect("the design was checked");
         Column {
             title: judged.label.clone(),
@@ -103,7 +103,7 @@ pub fn picture(results: &Results, shown: &[JudgedBy]) -> (Vec<Column>, Vec<Line>
     };
     let line = |(place, name): (usize, &String)| {
         let own = results.claims_of(place);
-        let cell = |judged: &JudgedBy| {
+        let cell = |judged: &JudgedClaim| {
             let row = own.iter().find(|row| row.claim == judged.id)?;
             Some((row.value?, row.cells.low.zip(row.cells.high)))
         };

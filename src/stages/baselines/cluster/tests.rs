@@ -21,7 +21,8 @@ fn blobs(parts: usize, distance: f64, seed: u64) -> (BodyMap, Vec<usize>) {
 
 /// Clusters by all three methods from the same seed.
 fn all(map: &BodyMap, clusters: usize) -> [Vec<usize>; 3] {
-    Clustering::ALL.map(|method| cluster(method, map, clusters, 10, &mut stream(1, 1, method.name(), 0)))
+    ClusteringMethod::ALL
+        .map(|method| cluster(method, map, clusters, 10, &mut stream(1, 1, method.name(), 0)))
 }
 
 /// Number of labels that are used; all must be below `clusters`.
@@ -107,7 +108,7 @@ fn fewer_points_than_clusters_are_each_their_own() {
         }
     }
     let (map, _) = blobs(2, 5.0, 1);
-    for method in Clustering::ALL {
+    for method in ClusteringMethod::ALL {
         assert_eq!(cluster(method, &map, 0, 0, &mut stream(1, 1, "none", 0)), vec![0; 40]);
     }
 }

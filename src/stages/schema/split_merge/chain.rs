@@ -14,7 +14,7 @@ use rand_distr::Gamma;
 
 use super::clusters::{Cluster, graph, log_joints};
 use super::collapsed::collapsed_labels;
-use super::division::{Care, Division};
+use super::division::{Division, SplitProposal};
 use super::neighbours::Neighbours;
 use crate::stages::mixture::{
     Gaussian, NormalInverseWishart, Points, Rounding, SufficientStatistics, assignments,
@@ -28,26 +28,26 @@ use crate::stages::tree::Edge;
 #[derive(Debug, Clone, Copy)]
 enum Move {
     /// Splits the cluster of two points, or merges both of theirs.
-    SplitOrMerge(Care),
+    SplitOrMerge(SplitProposal),
     /// Divides the points of the clusters of two points anew.
-    SplitAnew(Care),
+    SplitAnew(SplitProposal),
     /// Makes three clusters of two, or two of three: two clusters may have shared a third part between them, and no split of
     /// one of them is likely.
-    TwoOrThree(Care),
+    TwoOrThree(SplitProposal),
 }
 
 /// The moves of a sweep.
 const MOVES: [Move; 10] = [
-    Move::SplitOrMerge(Care::Odds(1.0)),
-    Move::SplitOrMerge(Care::Blind),
-    Move::TwoOrThree(Care::Odds(1.0)),
-    Move::SplitAnew(Care::Odds(1.0)),
-    Move::SplitAnew(Care::Odds(0.5)),
-    Move::SplitOrMerge(Care::Odds(0.1)),
-    Move::SplitOrMerge(Care::Blind),
-    Move::TwoOrThree(Care::Odds(0.3)),
-    Move::SplitAnew(Care::Odds(0.3)),
-    Move::SplitAnew(Care::Odds(0.5)),
+    Move::SplitOrMerge(SplitProposal::Tempered(1.0)),
+    Move::SplitOrMerge(SplitProposal::Uninformed),
+    Move::TwoOrThree(SplitProposal::Tempered(1.0)),
+    Move::SplitAnew(SplitProposal::Tempered(1.0)),
+    Move::SplitAnew(SplitProposal::Tempered(0.5)),
+    Move::SplitOrMerge(SplitProposal::Tempered(0.1)),
+    Move::SplitOrMerge(SplitProposal::Uninformed),
+    Move::TwoOrThree(SplitProposal::Tempered(0.3)),
+    Move::SplitAnew(SplitProposal::Tempered(0.3)),
+    Move::SplitAnew(SplitProposal::Tempered(0.5)),
 ];
 
 /// What a move does to the clusters of its ends: their points are divided anew.
@@ -60,7 +60,7 @@ struct Regrouping {
     /// How many of the points, from the first, were drawn by drawing a cluster each, and a point of it.
     by_cluster: usize,
     /// What a division goes by.
-    care: Care,
+    care: SplitProposal,
 }
 
 /// What is proposed. It is accepted by the product of two ratios.

@@ -19,13 +19,13 @@ use crate::stages::mixture::{Gaussian, NormalInverseWishart, Points, Rounding, S
 /// Rounds of Lloyd's algorithm, and rounds of Gaussians, at most.
 const ROUNDS: usize = 10;
 
-/// What a division goes by.
+/// How a split is proposed.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Care {
-    /// By the odds of each point to this power.
-    Odds(f64),
-    /// By shares that are drawn evenly.
-    Blind,
+pub enum SplitProposal {
+    /// By the odds of each point, tempered to this power.
+    Tempered(f64),
+    /// By random shares, whatever the points ("dumb" splits).
+    Uninformed,
 }
 
 /// How to divide some points among their ends, a side for each.
@@ -35,7 +35,7 @@ pub struct Division {
     others: Vec<usize>,
     /// The points that have the sides.
     ends: Vec<usize>,
-    /// Of each of the others, the logarithms of the probabilities of all sides; none if the division is blind, or has one side.
+    /// Of each of the others, the logarithms of the probabilities of all sides; none if the proposal is uninformed, or has one side.
     log_shares: Option<Vec<f64>>,
 }
 
@@ -49,11 +49,11 @@ impl Division {
         prior: &NormalInverseWishart,
         members: &[usize],
         ends: &[usize],
-        care: Care,
+        care: SplitProposal,
     ) -> Result<Self, Rounding> {
         let others = members.iter().copied().filter(|point| !ends.contains(point)).collect();
         let mut division = Self { others, ends: ends.to_vec(), log_shares: None };
-        if let Care::Odds(power) = care
+        if let SplitProposal::Tempered(power) = care
             && ends.len() > 1
         {
             division.log_shares = Some(division.weigh(points, prior, power)?);

@@ -41,10 +41,10 @@ impl Mutant {
         match self {
             Self::None => {}
             Self::Further | Self::NoDivisions | Self::NoEnds => {
-                (0..4).for_each(|_| self.step(chain, Move::SplitOrMerge(Care::Odds(0.3)), rng));
+                (0..4).for_each(|_| self.step(chain, Move::SplitOrMerge(SplitProposal::Tempered(0.3)), rng));
             }
             Self::FurtherOfThree | Self::NoEndsOfThree => {
-                (0..4).for_each(|_| self.step(chain, Move::TwoOrThree(Care::Odds(0.3)), rng));
+                (0..4).for_each(|_| self.step(chain, Move::TwoOrThree(SplitProposal::Tempered(0.3)), rng));
             }
             Self::NoJoints => {
                 for cluster in &mut chain.clusters {
