@@ -28,7 +28,7 @@ pub struct Page {
     pub rows: Vec<Row>,
     /// The pictures of the figures.
     pub pictures: Vec<Picture>,
-    /// What the viewer shows, p rising, each as [`viewer::scene::Scene::data`] gives it.
+    /// What the viewer shows, p rising, each as `viewer::scene::Scene::data` gives it.
     pub scenes: Vec<Value>,
     /// What was run, with all settings, and the files of the folder.
     pub manifest: Manifest,
