@@ -189,6 +189,17 @@ fn a_study_of_one_factor_at_a_time_says_what_each_value_does_and_continues_where
         assert_eq!(row["failed"] == "2", row["configuration"] == "4", "{row:?}");
     }
 
+    // A finished study is not run again, and not lost to a part of it.
+    let again = bodyschema(folder.path(), "study design.toml --out one");
+    assert!(String::from_utf8(again.stdout).unwrap().contains("already"));
+    let part = bodyschema(folder.path(), "study design.toml --only levels --out one");
+    let message = String::from_utf8(part.stderr).unwrap();
+    assert!(
+        part.status.code() == Some(2) && message.contains("holds the tables of 4 configurations"),
+        "{message}"
+    );
+    assert_eq!(files(&at("one")), one);
+
     // A factor is the same alone, and what is run after it continues from there.
     succeed(folder.path(), "study design.toml --only levels --jobs 3 --out part");
     let part = fs::read_to_string(at("part/study.md")).unwrap();
@@ -305,6 +316,23 @@ fn what_is_no_design_is_refused_in_one_line() {
     refused("", search.replace("1e5", "-1.0"), "motion.stiffness");
     refused("", search.replace("keep = 2", "keep = 0"), "`next.keep` is 0");
     refused("", search.replace("\"ranking\", ", ""), "needs `ranking`");
+    refused(
+        "",
+        search.replace("weight = 1\nslack = 5\n", "").replace("weight = 1\nslack = 0.5\n", ""),
+        "needs a [[claim]] with",
+    );
+    refused(
+        "",
+        search
+            .replace("[next.settings]\n", "[next.settings]\nschema = { chians = 9 }\n")
+            .replace("simulations = 3", "simulations = 3, x = 1"),
+        "configuration `next.settings`: unknown setting",
+    );
+    refused(
+        "",
+        search.replace("dimension = 4 }", "dimension = 4, seed = 9 }"),
+        "`experiment.seed`; use the key `seed`",
+    );
     let comparison = named();
     refused("", comparison.replace("\"three\"", "\"gentle\""), "two of `gentle` among configurations");
     refused("", comparison.replace("number-of-parts", "beauty"), "names `beauty` of exp1");
@@ -315,6 +343,13 @@ fn what_is_no_design_is_refused_in_one_line() {
         "",
         comparison.replace("number-of-parts", "ari-too-few-clusters"),
         "names `ari-too-few-clusters`",
+    );
+    fs::create_dir_all(folder.path().join("other/checkpoints")).unwrap();
+    fs::write(folder.path().join("design.toml"), &comparison).unwrap();
+    let foreign = bodyschema(folder.path(), "study design.toml --out other");
+    assert!(
+        foreign.status.code() == Some(2)
+            && String::from_utf8(foreign.stderr).unwrap().contains("another command")
     );
     let output = bodyschema(folder.path(), "study nothing.toml --out out");
     assert_eq!(output.status.code(), Some(2));

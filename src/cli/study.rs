@@ -58,6 +58,10 @@ impl Study {
         }
         let used = used_before(design.seeds());
         let out = &self.out;
+        if study::is_finished(&source.text, &configurations, out)? {
+            say(format!("All files are in {} already; remove it to run the study again.", out.display()))?;
+            return Ok(ExitCode::SUCCESS);
+        }
         prepare_folder(out)?;
         if !self.gather {
             study::run(&source.text, &configurations, self.shard.unwrap_or(Shard::WHOLE), out)?;

@@ -4,7 +4,8 @@ use std::fmt::Display;
 
 /// A row of a table.
 pub fn row<T: Display>(cells: impl IntoIterator<Item = T>) -> String {
-    let cells: Vec<String> = cells.into_iter().map(|cell| cell.to_string()).collect();
+    let cells: Vec<String> =
+        cells.into_iter().map(|cell| cell.to_string().replace('\n', " ").replace('|', r"\|")).collect();
     format!("| {} |", cells.join(" | "))
 }
 

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use toml::Table;
 
 use super::choices::{Gains, short};
-use super::extends::{BUNDLED, DesignText};
+use super::extends::{BUNDLED, DesignText, reason};
 use super::levels::{DrawCounts, Level};
 use crate::analysis::published::{Claim, Experiment, Measure};
 use crate::tasks::error::ExperimentError;
@@ -35,6 +35,9 @@ pub const COLUMNS: [&str; 11] = [
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Design {
+    /// Where it was read, for messages.
+    #[serde(skip)]
+    pub origin: String,
     /// Title of the page.
     pub title: String,
     /// What the study is for: a paragraph of the page.
@@ -192,13 +195,19 @@ impl Design {
     /// If it is not a design, or names what is not there. The message names the file, the key, and what is allowed.
     pub fn parse(source: &DesignText) -> Result<Self, ExperimentError> {
         let wrong = |message: String| ExperimentError::design(&source.origin, message);
-        let mut design: Self = toml::from_str(&source.text).map_err(|error| wrong(error.to_string()))?;
+        let mut design: Self =
+            toml::from_str(&source.text).map_err(|error| wrong(reason(&source.text, &error)))?;
+        design.origin.clone_from(&source.origin);
         if design.claims.is_empty() {
             design.claims = scored();
         }
         for option in design.factors.iter_mut().flat_map(|factor| &mut factor.options) {
             if option.label.is_empty() {
-                option.label = short(&option.settings);
+                let gains = option.gains.map(|gains| gains.in_words());
+                option.label = Some(short(&option.settings))
+                    .filter(|words| !words.is_empty())
+                    .or(gains)
+                    .unwrap_or_default();
             }
         }
         if design.sections.is_empty() {

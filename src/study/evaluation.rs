@@ -144,7 +144,9 @@ impl<'a> Evaluation<'a> {
                     .map(|(one, holds)| Held { movement: one.row.places[0], holds: *holds == Some(true) });
                 let held: Vec<Held> = held.collect();
                 let share = share(&held, &mut stream(design.seed, 0, "shares", 0));
-                let (low, high) = share.interval.unzip();
+                // Movements that were not drawn are no sample of movements.
+                let interval = share.interval.filter(|_| design.draws.is_some());
+                let (low, high) = interval.unzip();
                 ShareRow {
                     group: group.clone(),
                     claim: claim.to_owned(),

@@ -46,8 +46,9 @@ impl DesignText {
         }
         table = extended(table, design, &origin, 0)?;
         if let Some(seed) = seed {
-            let seed = i64::try_from(seed)
-                .map_err(|_| ExperimentError::design(&origin, "cannot have a seed of 2^63 or more"))?;
+            let seed = i64::try_from(seed).map_err(|_| {
+                ExperimentError::design("--seed", format!("{seed} is too large; use one below 2^63"))
+            })?;
             table.insert("seed".to_owned(), Value::Integer(seed));
         }
         let text = toml::to_string(&table).expect("a table can be written");
@@ -69,14 +70,16 @@ fn extended(mut own: Table, path: &Path, origin: &str, depth: usize) -> Result<T
             format!("extends more than {MOST_EXTENDED} designs, one after the other; is it a circle?");
         return Err(ExperimentError::design(origin, message));
     }
-    // Of a bundled design, the name without a folder and an extension is that of another bundled one.
+    // A bundled design extends another bundled one.
     let beside = path.parent().unwrap_or(Path::new("")).join(&base);
-    let path = match (beside.is_file(), Path::new(&base).file_stem()) {
-        (false, Some(name)) => name.into(),
-        _ => beside,
+    let path = match path.is_file() {
+        true if beside.is_file() => beside,
+        true => base.into(),
+        false => beside.with_extension(""),
     };
-    let (text, origin) = find(&path)?;
-    let mut below = extended(parse(&text, &origin)?, &path, &origin, depth + 1)?;
+    let (text, base_origin) = find(&path)
+        .map_err(|error| ExperimentError::design(origin, format!("`extends` another design: {error}")))?;
+    let mut below = extended(parse(&text, &base_origin)?, &path, &base_origin, depth + 1)?;
     merge(&mut below, &own);
     Ok(below)
 }
@@ -88,7 +91,8 @@ fn find(design: &Path) -> Result<(String, String), ExperimentError> {
         Some((name, text)) => Ok(((*text).to_owned(), format!("reproduce/{name}.toml"))),
         None if design.is_file() => Ok((read_toml(design)?, design.display().to_string())),
         None => {
-            let names: Vec<&str> = BUNDLED.iter().map(|(name, _)| *name).collect();
+            let names: Vec<&str> =
+                BUNDLED.iter().map(|(name, _)| *name).filter(|name| *name != "scored").collect();
             let message = format!("no such file; give a design, or one of {}", names.join(", "));
             Err(ExperimentError::design(&design.display().to_string(), message))
         }
@@ -96,7 +100,14 @@ fn find(design: &Path) -> Result<(String, String), ExperimentError> {
 }
 
 fn parse(text: &str, origin: &str) -> Result<Table, ExperimentError> {
-    text.parse().map_err(|error: toml::de::Error| ExperimentError::design(origin, error))
+    text.parse().map_err(|error: toml::de::Error| ExperimentError::design(origin, reason(text, &error)))
+}
+
+/// Why a text is no design, with the line.
+pub fn reason(text: &str, error: &toml::de::Error) -> String {
+    let line = error.span().map(|span| 1 + text[..span.start].matches('\n').count());
+    let line = line.map_or(String::new(), |line| format!("line {line}: "));
+    format!("{line}{}", error.message())
 }
 
 #[cfg(test)]

@@ -6,16 +6,19 @@ use super::design::{Design, Section};
 use super::evaluation::Evaluation;
 use super::extends::DesignText;
 use super::page;
-use super::plan::Configuration;
+use super::plan::{Configuration, plan};
 use super::ranking::Ranking;
 use super::results::{Gathering, Results};
 use super::work::{DESIGN, KEY, StudyWork, check_design};
 use crate::files::checkpoint::Checkpoints;
 use crate::files::manifest::Manifest;
 use crate::files::result_folder::ResultFolder;
-use crate::files::{one_line, read_text};
+use crate::files::{FileError, one_line, read_text};
 use crate::settings::Settings;
 use crate::tasks::error::ExperimentError;
+
+/// What the manifest of a study calls it.
+const STUDY: &str = "study";
 
 /// The page of a study.
 const PAGE: &str = "study.md";
@@ -39,8 +42,12 @@ pub fn gather(
     let mut gathering = Gathering::new(design);
     work.outcomes(out, |at, outcome| gathering.add(&plan[at], &outcome))?;
     let results = gathering.finish();
-    // What an earlier run of other configurations of the design may have left.
-    folder.remove(["settings.toml", "best.toml", "next.toml"].map(str::to_owned))?;
+    // What an earlier run of fewer configurations of the design has written.
+    if let Ok(earlier) = Manifest::read(out)
+        && earlier.study.as_deref() == Some(STUDY)
+    {
+        folder.remove(earlier.outputs.into_iter().map(|output| output.file).filter(|file| file != DESIGN))?;
+    }
     folder.remember([DESIGN.to_owned()]);
     results.write(&mut folder)?;
     write_rest(&results, &mut folder)?;
@@ -49,7 +56,7 @@ pub fn gather(
     {
         folder.write_text("settings.toml", &settings_file(&only.settings))?;
     }
-    folder.write_manifest(Manifest::of_study("study", seed))?;
+    folder.write_manifest(Manifest::of_study(STUDY, seed))?;
     if all {
         work.clear()?;
     }
@@ -62,6 +69,27 @@ fn settings_file(settings: &Settings) -> String {
     format!(
         "# Use: bodyschema reproduce exp1 --settings settings.toml --out DIR; and the same with exp2.\n{settings}"
     )
+}
+
+/// Whether the tables of these configurations are in a folder, and nothing is left to do.
+///
+/// # Errors
+/// If tables of further configurations are there, which would be lost.
+pub fn is_finished(text: &str, plan: &[Configuration], out: &Path) -> Result<bool, ExperimentError> {
+    if !is_study(out) {
+        return Ok(false);
+    }
+    check_design(text, out)?;
+    let there = Results::numbers_in(out)?;
+    let wanted: Vec<usize> = plan.iter().map(|one| one.number).collect();
+    if let Some(other) = there.iter().find(|number| !wanted.contains(number)) {
+        let message = format!(
+            "holds the tables of {} configurations, {other} among them, which this command leaves out; choose another --out",
+            there.len()
+        );
+        return Err(FileError::new(out, message).into());
+    }
+    Ok(there == wanted && !out.join("checkpoints").exists())
 }
 
 /// Whether a folder holds a finished study.
@@ -77,6 +105,7 @@ pub fn redraw(folder: &Path) -> Result<(), ExperimentError> {
     let path = folder.join(DESIGN);
     let source = DesignText { text: read_text(&path)?, origin: path.display().to_string() };
     let design = Design::parse(&source)?;
+    plan(&design)?;
     // The revision of the program that ran the study, which may not be this one.
     let manifest = Manifest::read(folder)?;
     let results = Results::read(folder, design, one_line(&manifest.provenance.revision))?;
@@ -91,9 +120,15 @@ pub fn redraw(folder: &Path) -> Result<(), ExperimentError> {
 fn write_rest(results: &Results, folder: &mut ResultFolder) -> Result<(), ExperimentError> {
     let evaluation = Evaluation::is_asked_for(&results.design).then(|| Evaluation::new(results));
     if let Some(evaluation) = &evaluation {
-        folder.write_rows("shares.csv", &evaluation.shares)?;
-        folder.write_rows("joint.csv", evaluation.joint)?;
-        folder.write_rows("variance.csv", &evaluation.variance)?;
+        if results.design.has(Section::Shares) {
+            folder.write_rows("shares.csv", &evaluation.shares)?;
+        }
+        if let Some(joint) = evaluation.joint {
+            folder.write_rows("joint.csv", [joint])?;
+        }
+        if results.design.has(Section::Variance) {
+            folder.write_rows("variance.csv", &evaluation.variance)?;
+        }
     }
     let ranking = results.design.has(Section::Ranking).then(|| Ranking::of(results));
     if let Some(ranking) = &ranking {

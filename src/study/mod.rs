@@ -22,7 +22,7 @@ mod work;
 
 pub use self::design::Design;
 pub use self::extends::DesignText;
-pub use self::gather::{gather, is_study, redraw};
+pub use self::gather::{gather, is_finished, is_study, redraw};
 pub use self::plan::{Selection, plan};
 pub use self::shard::Shard;
 pub use self::work::run;

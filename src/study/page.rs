@@ -23,6 +23,9 @@ pub fn text(results: &Results, evaluation: Option<&Evaluation>, ranking: Option<
     let mut lines = vec![format!("# {}\n", design.title)];
     let mut sections = Vec::new();
     for section in &design.sections {
+        if !sections.is_empty() {
+            sections.push(String::new());
+        }
         sections.extend(match section {
             Section::Values => values::values(results),
             Section::Changes => values::changes(results),

@@ -1,5 +1,6 @@
 //! Plan a study: list its configurations, named, one at a time around a base, as a full grid, or drawn evenly.
 
+use std::collections::HashMap;
 use std::str::FromStr;
 
 use toml::Table;
@@ -9,6 +10,7 @@ use super::design::{BASE, Choice, Design, Factor, Vary};
 use super::draw::drawn;
 use super::levels::SharedStages;
 use crate::settings::Settings;
+use crate::tasks::cache::Keys;
 use crate::tasks::error::ExperimentError;
 
 /// One way to run the experiments.
@@ -45,7 +47,7 @@ impl FromStr for Selection {
 /// # Errors
 /// If the settings of one cannot be used; the message names it.
 pub fn plan(design: &Design) -> Result<Vec<Configuration>, ExperimentError> {
-    let all = match (design.vary, design.draws) {
+    let mut all = match (design.vary, design.draws) {
         (_, Some(draws)) => {
             let drawn = drawn(design, draws).into_iter().enumerate();
             let made = drawn.map(|(at, drawn)| {
@@ -64,7 +66,7 @@ pub fn plan(design: &Design) -> Result<Vec<Configuration>, ExperimentError> {
                     .map(|choice| choice.label.as_str())
                     .collect::<Vec<_>>()
                     .join("; ");
-                configuration(design, at, name, on_shared_simulations(at), design.seed, &choices)
+                configuration(design, at, name, UNNUMBERED, design.seed, &choices)
             });
             made.collect()
         }
@@ -80,7 +82,7 @@ pub fn plan(design: &Design) -> Result<Vec<Configuration>, ExperimentError> {
             }
             let made = all.into_iter().enumerate();
             made.map(|(at, (name, choices))| {
-                configuration(design, at, name, on_shared_simulations(at), design.seed, &choices)
+                configuration(design, at, name, UNNUMBERED, design.seed, &choices)
             })
             .collect()
         }
@@ -92,27 +94,22 @@ pub fn plan(design: &Design) -> Result<Vec<Configuration>, ExperimentError> {
                     settings: named.settings.clone(),
                     gains: None,
                 };
-                let made = configuration(
-                    design,
-                    at,
-                    named.name.clone(),
-                    on_shared_simulations(at),
-                    design.seed,
-                    &[Some(&choice)],
-                )?;
+                let made =
+                    configuration(design, at, named.name.clone(), UNNUMBERED, design.seed, &[Some(&choice)])?;
                 Ok(Configuration { labels: Vec::new(), ..made })
             });
             made.collect()
         }
     }?;
     check(design, &all)?;
+    if design.draws.is_none() {
+        number_stages(&mut all);
+    }
     Ok(all)
 }
 
-/// Configurations on the same simulations: nothing is known beforehand of which distances and maps they share.
-fn on_shared_simulations(at: usize) -> SharedStages {
-    SharedStages { movement: 1, distances: at + 1, maps: at + 1 }
-}
+/// Of configurations that are not drawn, before the plan numbers what they share.
+const UNNUMBERED: SharedStages = SharedStages { movement: 1, distances: 1, maps: 1 };
 
 /// The options of a drawn configuration or of one of a grid.
 fn chosen<'a>(design: &'a Design, options: &[usize]) -> Vec<Option<&'a Choice>> {
@@ -144,11 +141,15 @@ fn configuration(
         merge(&mut changes, &choice.settings);
         gains = choice.gains.or(gains);
     }
-    let origin = format!("the configuration {name} of the study");
-    let mut settings = Settings::overlaid([&design.settings, &changes], &origin)?;
+    let overlaid = |changes: &Table| settings_of(design, &name, [&design.settings, changes]);
+    let mut settings = overlaid(&changes)?;
     if let Some(gains) = gains {
         merge(&mut changes, &gains.settings(&settings));
-        settings = Settings::overlaid([&design.settings, &changes], &origin)?;
+        settings = overlaid(&changes)?;
+    }
+    if let Some(next) = &design.next {
+        // Before hours are spent on this round.
+        settings_of(design, "next.settings", [&design.settings, &next.settings, &changes])?;
     }
     settings.experiment.seed = seed;
     let labels =
@@ -156,11 +157,52 @@ fn configuration(
     Ok(Configuration { number: at + 1, name, places, labels, changes, settings })
 }
 
+/// Tables of settings over the defaults.
+fn settings_of<'a>(
+    design: &Design,
+    name: &str,
+    tables: impl IntoIterator<Item = &'a Table> + Clone,
+) -> Result<Settings, ExperimentError> {
+    let origin = place(design, name);
+    let has_seed =
+        |table: &&Table| table.get("experiment").is_some_and(|section| section.get("seed").is_some());
+    if tables.clone().into_iter().any(|table| has_seed(&table)) {
+        let message = "sets `experiment.seed`; use the key `seed` of the design, or --seed";
+        return Err(ExperimentError::design(&origin, message));
+    }
+    Settings::overlaid(tables, &origin).map_err(|error| {
+        let message = error.to_string();
+        let bare = message.strip_prefix(&format!("{origin}: ")).unwrap_or(&message);
+        ExperimentError::design(&origin, bare)
+    })
+}
+
+/// A configuration, for messages.
+fn place(design: &Design, name: &str) -> String {
+    format!("{}: configuration `{name}`", design.origin)
+}
+
+/// Numbers of movements, distances and maps, by what they depend on: equal ones have one number.
+fn number_stages(all: &mut [Configuration]) {
+    let mut known: [HashMap<String, usize>; 3] = Default::default();
+    for one in all {
+        let keys = Keys::of(&one.settings, 1, &one.settings.experiment.dimensions);
+        let mut number = |stage: usize, key: String| {
+            let next = known[stage].len() + 1;
+            *known[stage].entry(key).or_insert(next)
+        };
+        one.places = SharedStages {
+            movement: number(0, keys.movement),
+            distances: number(1, keys.distances),
+            maps: number(2, keys.maps),
+        };
+    }
+}
+
 /// Whether what is compared can be compared.
 fn check(design: &Design, all: &[Configuration]) -> Result<(), ExperimentError> {
-    let wrong = |one: &Configuration, message: &str| {
-        Err(ExperimentError::design(&format!("the configuration {} of the study", one.name), message))
-    };
+    let wrong =
+        |one: &Configuration, message: &str| Err(ExperimentError::design(&place(design, &one.name), message));
     if design.draws.is_some()
         && let Some(one) = all.iter().find(|one| one.settings.experiment.simulations < 2)
     {

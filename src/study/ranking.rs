@@ -3,6 +3,7 @@
 use serde::Serialize;
 use toml::Table;
 
+use super::choices::merge;
 use super::design::{Design, JudgedClaim, NamedConfiguration, Section};
 use super::plan::plan;
 use super::results::{ClaimRow, Results};
@@ -82,7 +83,9 @@ impl Ranking {
         if let Some(best) = self.rows.first().filter(|best| best.resolved)
             && let Some(table) = changes(best)
         {
-            files.push(("best.toml", format!("# The configuration {}.\n{}", best.name, in_toml(&table))));
+            let mut settings = results.design.settings.clone();
+            merge(&mut settings, &table);
+            files.push(("best.toml", format!("# The configuration {}.\n{}", best.name, in_toml(&settings))));
         }
         if let Some(next) = &results.design.next {
             let go_on = self.rows.iter().take(next.keep);
@@ -92,7 +95,8 @@ impl Ranking {
                 })
                 .collect();
             let mut settings = results.design.settings.clone();
-            super::choices::merge(&mut settings, &next.settings);
+            merge(&mut settings, &next.settings);
+            let count = configurations.len();
             let design = Design {
                 title: format!("{}: the next round", results.design.title),
                 settings,
@@ -106,10 +110,7 @@ impl Ranking {
                 ..results.design.clone()
             };
             let text = toml::to_string(&design).expect("a design can be written");
-            files.push((
-                "next.toml",
-                format!("# The best {} configurations, the best first.\n{text}", next.keep),
-            ));
+            files.push(("next.toml", format!("# The best {count} configurations, the best first.\n{text}")));
         }
         files
     }

@@ -301,6 +301,18 @@ impl Results {
         [CONFIGURATIONS, CLAIMS].iter().all(|name| folder.join(name).is_file())
     }
 
+    /// Numbers of the configurations whose tables are in a folder.
+    ///
+    /// # Errors
+    /// If the table cannot be read.
+    pub fn numbers_in(folder: &Path) -> Result<Vec<usize>, FileError> {
+        let path = folder.join(CONFIGURATIONS);
+        let rows: Vec<HashMap<String, String>> = read_rows(&path)?;
+        let number = |row: &HashMap<String, String>| row.get("configuration")?.parse().ok();
+        let numbers: Option<Vec<usize>> = rows.iter().map(number).collect();
+        numbers.ok_or_else(|| FileError::new(&path, "is not a table of configurations".to_owned()))
+    }
+
     /// Reads the tables that [`Results::write`] wrote.
     ///
     /// # Errors
@@ -311,6 +323,7 @@ impl Results {
         let configurations: Option<Vec<_>> =
             rows.into_iter().map(|cells| ConfigurationRow::from_cells(cells, &design)).collect();
         let configurations = configurations
+            .filter(|all| !all.is_empty())
             .ok_or_else(|| FileError::new(&path, "is not of the design beside it".to_owned()))?;
         let claims: Vec<ClaimRow> = read_rows(&folder.join(CLAIMS))?;
         let expected = configurations

@@ -15,6 +15,7 @@ use super::outcome::{Failure, Outcome};
 use super::plan::Configuration;
 use super::shard::Shard;
 use crate::files::checkpoint::Checkpoints;
+use crate::files::manifest::Manifest;
 use crate::files::{FileError, read_text, sha256_of_text, write_same_text};
 use crate::pipeline::{Condition, Record};
 use crate::settings::Settings;
@@ -42,12 +43,13 @@ pub fn run(text: &str, plan: &[Configuration], shard: Shard, out: &Path) -> Resu
     let work = StudyWork::new(plan, Checkpoints::new(out, &KEY));
     let left: Vec<&Movement> =
         work.of_shard(shard).into_iter().filter(|movement| !work.is_finished(movement)).collect();
-    let groups: Vec<Vec<Task>> = left.iter().map(|movement| movement.tasks.clone()).collect();
+    // Of a movement, what other configurations inferred from it before is there.
+    let groups: Vec<Vec<Task>> = left.iter().map(|movement| work.unfinished(movement)).collect();
     let bar =
         progress(groups.iter().map(|tasks| Batch::length(tasks)).sum(), format!("{} movements", left.len()));
     let (begun, finished) = (Instant::now(), AtomicUsize::new(0));
     let keep = |at: usize, outcomes: Vec<TaskOutcome>| -> Result<(), FileError> {
-        work.keep(left[at], outcomes)?;
+        work.keep(left[at], &groups[at], outcomes)?;
         if bar.is_hidden() {
             tell(1 + finished.fetch_add(1, Ordering::Relaxed), left.len(), begun.elapsed());
         }
@@ -69,6 +71,10 @@ fn tell(finished: usize, all: usize, spent: Duration) {
 fn keep_design(text: &str, out: &Path) -> Result<(), ExperimentError> {
     let path = out.join(DESIGN);
     if !path.exists() {
+        if Manifest::is_in(out) || out.join("checkpoints").exists() {
+            let message = "holds results of another command; choose another folder";
+            return Err(FileError::new(out, message).into());
+        }
         // Other shards may do so at the same time.
         write_same_text(&path, text)?;
     }
@@ -177,19 +183,23 @@ impl StudyWork {
         self.checkpoints.recall(&movement.name).unwrap_or_default()
     }
 
-    fn is_finished(&self, movement: &Movement) -> bool {
+    fn unfinished(&self, movement: &Movement) -> Vec<Task> {
         let kept = self.recall(movement);
-        movement.tasks.iter().all(|task| kept.contains_key(&task.name))
+        movement.tasks.iter().filter(|task| !kept.contains_key(&task.name)).cloned().collect()
+    }
+
+    fn is_finished(&self, movement: &Movement) -> bool {
+        self.unfinished(movement).is_empty()
     }
 
     /// Keeps what a movement gave, beside what other configurations inferred from it before.
-    fn keep(&self, movement: &Movement, outcomes: Vec<TaskOutcome>) -> Result<(), FileError> {
+    fn keep(&self, movement: &Movement, tasks: &[Task], outcomes: Vec<TaskOutcome>) -> Result<(), FileError> {
         let mut kept = self.recall(movement);
-        for (task, outcome) in movement.tasks.iter().zip(outcomes) {
+        for (task, outcome) in tasks.iter().zip(outcomes) {
             kept.insert(task.name.clone(), outcome.map(TaskResult::of));
         }
         self.checkpoints.keep(&movement.name, &kept)?;
-        movement.tasks.iter().try_for_each(|task| self.checkpoints.forget(&task.name))
+        tasks.iter().try_for_each(|task| self.checkpoints.forget(&task.name))
     }
 
     /// Hands each configuration's outcome to `take`, in their order, and holds no more in memory than what later ones need.

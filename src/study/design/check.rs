@@ -51,6 +51,14 @@ impl Design {
                 "draws nothing: movements, distances, maps and inferences must be positive".to_owned()
             );
         }
+        if let Some(draws) = self.draws
+            && self.seed.checked_add(draws.movements as u64).is_none_or(|last| i64::try_from(last).is_err())
+        {
+            return Err(
+                "has a `seed` that leaves no room for the seeds of its movements; use one far below 2^63"
+                    .to_owned(),
+            );
+        }
         let combined =
             self.factors.iter().try_fold(1_usize, |all, factor| all.checked_mul(factor.options.len()));
         let count = if self.vary == Some(Vary::Grid) { Some(combined) } else { drawn };
@@ -68,6 +76,13 @@ impl Design {
         let one_at_a_time = self.vary == Some(Vary::OneAtATime);
         if self.has(Section::Factors) && !one_at_a_time {
             return Err("`factors` among the sections needs `vary = \"one-at-a-time\"`".to_owned());
+        }
+        let weights: Vec<f64> = self.claims.iter().filter_map(|judged| judged.weight).collect();
+        if self.has(Section::Ranking) && weights.is_empty() {
+            return Err("`ranking` among the sections needs a [[claim]] with `weight` and `slack`".to_owned());
+        }
+        if self.has(Section::Changes) && self.draws.is_some() {
+            return Err("`changes` among the sections does not go with [draws]: drawn configurations have movements of their own".to_owned());
         }
         let over_all = [Section::Shares, Section::Variance, Section::Curves];
         if over_all.into_iter().any(|section| self.has(section)) && (one_at_a_time || self.factors.is_empty())
@@ -103,6 +118,13 @@ impl Design {
     fn check_factors(&self) -> Result<(), String> {
         if let Some(empty) = self.factors.iter().find(|factor| factor.options.is_empty()) {
             return Err(format!("has a factor `{}` without an option; give it one or remove it", empty.name));
+        }
+        let unnamed = |factor: &&Factor| factor.options.iter().any(|option| option.label.is_empty());
+        if let Some(factor) = self.factors.iter().find(unnamed) {
+            return Err(format!(
+                "has an option of `{}` without settings, gains and label; give it one of them",
+                factor.name
+            ));
         }
         let known = |name: &String| self.factors.iter().any(|factor| factor.name == *name);
         if let Some(unknown) = self.groups.iter().find(|name| !known(name)) {
@@ -153,7 +175,9 @@ impl JudgedClaim {
         }
         match (self.weight, self.slack) {
             (None, None) => Ok(()),
-            (Some(weight), Some(slack)) if weight > 0.0 && slack > 0.0 => Ok(()),
+            (Some(weight), Some(slack)) if weight > 0.0 && slack > 0.0 && (weight + slack).is_finite() => {
+                Ok(())
+            }
             _ => Err(format!("`weight` and `slack` of `{id}` must both be there and positive, or neither")),
         }
     }

@@ -172,7 +172,7 @@ impl<'a> Study<'a> {
             ),
             self.data(&values),
             format!(
-                "The default itself: {} ({}). These are {} simulations; `docs/results.md` has the results of the default.\n",
+                "The default itself: {} ({}). These are {} simulations.\n",
                 cell(self.main(self.first(), Model::DpgmmLj, Measure::Tree), true),
                 self.survival(self.first()).name(),
                 self.base.experiment.simulations
@@ -196,8 +196,7 @@ impl<'a> Study<'a> {
             "**Data behind each answer:** {} simulations and a median of {} posterior samples, of which {fewest} to {most} are \
              eligible (median {}). A sample is eligible if it has the right number of parts and an adjusted Rand index \
              (ARI) of 1. The tree accuracy is the share of eligible samples that recover the true tree. Few eligible \
-             samples make wide intervals: read \u{201c}perhaps\u{201d} as \u{201c}not enough data\u{201d}. This page shows the \
-             effect of one choice; the multiverse (`reproduce/multiverse.sh`) combines all of them.\n",
+             samples make wide intervals: read \u{201c}perhaps\u{201d} as \u{201c}not enough data\u{201d}.\n",
             self.base.experiment.simulations,
             quantile(&all, 0.5),
             quantile(&eligible, 0.5)
@@ -215,7 +214,7 @@ impl<'a> Study<'a> {
             lines.push(row([
                 format!("[{}](#{})", factor.heading(), factor.name),
                 factor.paper.clone(),
-                chosen(factor),
+                chosen(&self.base, factor),
                 factor.why.clone(),
                 self.span(at),
                 counts(&survivals),
@@ -259,7 +258,7 @@ impl<'a> Study<'a> {
             "most probable sample",
         ];
         let header: Vec<String> = COLUMNS.map(str::to_owned).into_iter().chain(elsewhere).collect();
-        let base = format!("default: {}", chosen(factor));
+        let base = format!("default: {}", chosen(&self.base, factor));
         let mut lines = vec![
             format!("\n<a id=\"{name}\"></a>\n\n## {title}\n"),
             format!("![{title}](figures/{name}.svg)\n"),
@@ -297,11 +296,10 @@ impl<'a> Study<'a> {
 }
 
 /// The default of a factor's settings.
-fn chosen(factor: &Factor) -> String {
-    let paper = Settings::paper();
+fn chosen(base: &Settings, factor: &Factor) -> String {
     let value = |key: &String| {
         let name = key.split_once('.').map_or(key.as_str(), |(_, name)| name);
-        format!("{name} = {}", value_of(&paper, key).unwrap_or_default())
+        format!("{name} = {}", value_of(base, key).unwrap_or_default())
     };
     factor.settings.iter().map(value).collect::<Vec<_>>().join(", ")
 }

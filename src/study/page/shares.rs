@@ -80,12 +80,17 @@ fn answer(evaluation: &Evaluation) -> String {
     let resolved = all.iter().filter(|one| one.resolved).count();
     let failed = all.iter().filter(|one| one.failed > 0).count();
     let mut words = values(evaluation);
+    if find("all", HEADLINE).is_some() {
+        words += &format!(
+            "Of all configurations, {} have a tree accuracy within the accepted range; of the {resolved} whose movements the time \
+             step resolves, {}. ",
+            of("all", HEADLINE),
+            of("resolved", HEADLINE),
+        );
+    }
     words += &format!(
-        "Of all configurations, {} have a tree accuracy within the accepted range; of the {resolved} whose movements the time \
-         step resolves, {}. All claims together hold in {}. {failed} configurations failed: their movement was unstable, or \
-         their sensors gave no map.",
-        of("all", HEADLINE),
-        of("resolved", HEADLINE),
+        "All claims together hold in {} of the configurations. {failed} of them failed: their movement was unstable, or their \
+         sensors gave no map.",
         of("all", TOGETHER),
     );
     let headline = evaluation.variance.iter().filter(|row| row.claim == HEADLINE && row.with.is_empty());

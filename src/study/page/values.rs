@@ -14,10 +14,15 @@ pub fn values(results: &Results) -> Vec<String> {
     let judged = &results.design.claims;
     let mut lines = vec![
         "\n## Values\n".to_owned(),
-        "All configurations are run on the same simulations. Intervals are 95 % intervals over simulations (bootstrap). Of a claim \
+        format!(
+            "{} Intervals are 95 % intervals over simulations (bootstrap). Of a claim \
          over several conditions, the value is that which lies farthest towards the outside of the accepted range. Bold: within the \
-         accepted range.\n"
-            .to_owned(),
+             accepted range.\n",
+            match results.design.draws {
+                Some(_) => "Configurations with the same movement are run on the same simulations.",
+                None => "All configurations are run on the same simulations.",
+            }
+        ),
     ];
     for (name, claims) in pictures(&results.design) {
         let ids: Vec<&str> = claims.iter().map(|judged| judged.id.as_str()).collect();
