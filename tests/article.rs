@@ -4,21 +4,15 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::Command;
 
 use sha2::{Digest, Sha256};
 use toml::Table;
 
-/// A file of the repository.
-fn path(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join(name)
-}
+mod support;
 
-fn read(name: &str) -> String {
-    let path = path("article").join(name);
-    fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
-}
+use support::repository::{entries, read, repository};
+use support::said::Said;
+use support::tools::python;
 
 /// Removes what lies between `open` and the next `close`, both included.
 fn without(text: &str, open: &str, close: &str) -> String {
@@ -85,7 +79,7 @@ fn typed(text: &str) -> Vec<String> {
 
 #[test]
 fn no_number_is_typed_by_hand() {
-    let text = read("content.typ");
+    let text = read("article/content.typ");
     assert_eq!(typed(&text), [""; 0]);
     for (wrong, number) in [
         ("it is 65.2 % by the code", "65.2"),
@@ -110,13 +104,13 @@ fn no_number_is_typed_by_hand() {
 
 #[test]
 fn every_value_has_a_source_and_is_used() {
-    let (text, values) = (read("content.typ"), read("values.toml").parse::<Table>().unwrap());
+    let (text, values) = (read("article/content.typ"), read("article/values.toml").parse::<Table>().unwrap());
     let holds: BTreeSet<&str> = values["holds"].as_table().unwrap().keys().map(String::as_str).collect();
     assert_eq!(between(&text, "#either(\"", "\")").collect::<BTreeSet<_>>(), holds, "choices of content.typ");
     let sourced = |(name, value): (&String, &toml::Value)| value.get("from").map(|_| name.to_owned());
     let names: BTreeSet<String> = values.iter().filter_map(sourced).collect();
     // The abstract takes values, too.
-    let (abstract_, script) = (["of(\"", "of('"], read("abstract.py"));
+    let (abstract_, script) = (["of(\"", "of('"], read("article/abstract.py"));
     let taken = between(&text, "#val(\"", "\")").chain(between(&script, abstract_[0], "\")")).chain(between(
         &script,
         abstract_[1],
@@ -138,8 +132,8 @@ fn paths(text: &str) -> impl Iterator<Item = &str> {
 
 #[test]
 fn every_path_in_the_text_exists() {
-    let text = read("content.typ");
-    let lost: Vec<&str> = paths(&text).filter(|name| !path(name).exists()).collect();
+    let text = read("article/content.typ");
+    let lost: Vec<&str> = paths(&text).filter(|name| !repository(name).exists()).collect();
     assert_eq!(lost, [""; 0], "paths that content.typ names");
     assert_eq!(paths("`a` is in `b/c`, not in `d/e`").collect::<Vec<_>>(), ["b/c", "d/e"]);
 }
@@ -152,7 +146,7 @@ fn folded(text: &str, key: &str) -> String {
 
 #[test]
 fn numbers_of_the_abstract_are_values() {
-    let values = read("values.toml").parse::<Table>().unwrap();
+    let values = read("article/values.toml").parse::<Table>().unwrap();
     let texts = values.values().filter_map(|value| value.get("text")?.as_str());
     let known: BTreeSet<&str> = texts.flat_map(str::split_whitespace).collect();
     let unknown = |text: &str| -> Vec<String> {
@@ -166,20 +160,15 @@ fn numbers_of_the_abstract_are_values() {
             .map(|index| words[index].to_owned())
             .collect()
     };
-    assert_eq!(unknown(&folded(&read("metadata.yaml"), "abstract")), [""; 0]);
+    assert_eq!(unknown(&folded(&read("article/metadata.yaml"), "abstract")), [""; 0]);
     assert_eq!(unknown("the 95 % interval is right in 12.3 % of 1,025 bodies"), ["12.3", "1,025"]);
 }
 
-/// Skipped with a message where there is no Python 3.11.
 #[test]
 fn values_are_those_of_the_committed_results() {
-    let modern = Command::new("python3").args(["-c", "import tomllib"]).output();
-    if !modern.is_ok_and(|output| output.status.success()) {
-        eprintln!("skipped: Python 3.11 is missing");
-        return;
-    }
-    let output = Command::new("python3").arg(path("article/values.py")).arg("--check").output().unwrap();
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let Some(mut script) = python(&repository("article/values.py")) else { return };
+    let said = Said::by(script.arg("--check"));
+    assert_eq!(said.status, Some(0), "{said:?}");
 }
 
 // ---- The committed PDF
@@ -202,22 +191,23 @@ fn sources(text: &str) -> BTreeSet<String> {
     let scripts = ["abstract.py", "choices.toml", "committed.py", "tables.py", "values.py"];
     let made = ["article.pdf", "article.sha256"];
     let names =
-        fs::read_dir(path("article")).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
+        entries("article").into_iter().map(|path| path.file_name().unwrap().to_str().unwrap().to_owned());
     let own = names.filter(|name| !scripts.contains(&name.as_str()) && !made.contains(&name.as_str()));
     let pictures = between(text, "\"/docs/", "\"").map(|name| format!("docs/{name}"));
-    let pictures = pictures.filter(|name| path(name).exists());
+    let pictures = pictures.filter(|name| repository(name).exists());
     own.map(|name| format!("article/{name}")).chain(pictures).collect()
 }
 
 #[test]
 fn the_pdf_is_made_from_the_committed_sources() {
-    let hashes = read("article.sha256");
+    let hashes = read("article/article.sha256");
     let advice = "run reproduce/article.sh --write, and commit article/";
     let listed: BTreeSet<String> = hashes.lines().map(|line| line[66..].to_owned()).collect();
-    let mut expected = sources(&read("content.typ"));
+    let mut expected = sources(&read("article/content.typ"));
     expected.insert(PDF.to_owned());
     assert_eq!(listed, expected, "article/article.sha256 lists other files; {advice}");
-    let data = |name: &str| fs::read(path(name)).unwrap_or_else(|error| panic!("{name}: {error}; {advice}"));
+    let data =
+        |name: &str| fs::read(repository(name)).unwrap_or_else(|error| panic!("{name}: {error}; {advice}"));
     let changed = stale(&hashes, data);
     assert!(changed.is_empty(), "{PDF} is stale: {} changed since it was made; {advice}", changed.join(", "));
     let pdf = data(PDF);

@@ -109,8 +109,7 @@ struct Power {
 }
 
 fn reference() -> Reference {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/reference/authors.json");
-    serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
+    serde_json::from_str(include_str!("reference/authors.json")).unwrap()
 }
 
 fn matrix(rows: &[Vec<f64>]) -> DMatrix<f64> {

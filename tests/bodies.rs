@@ -2,7 +2,6 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::Command;
 
 use bodyschema::estimate::estimate;
 use bodyschema::files::body::{NamedBody, read_body};
@@ -14,11 +13,14 @@ use bodyschema::stages::sense::sense;
 use bodyschema::stages::simulate::simulate;
 use rand_distr::{Distribution, StandardNormal};
 
+mod support;
+
+use support::folder::Folder;
+use support::repository::{entries, read, repository};
+use support::said::Said;
+
 fn bodies() -> Vec<(PathBuf, NamedBody)> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("bodies");
-    let mut paths: Vec<PathBuf> = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
-    paths.sort();
-    paths.into_iter().map(|path| (path.clone(), read_body(&path).unwrap())).collect()
+    entries("bodies").into_iter().map(|path| (path.clone(), read_body(&path).unwrap())).collect()
 }
 
 #[test]
@@ -37,39 +39,23 @@ fn each_is_a_tree_whose_parts_all_have_a_skin() {
 
 #[test]
 fn a_body_is_simulated_and_its_parts_are_named() {
-    let folder = tempfile::tempdir().unwrap();
-    let at = |name: &str| folder.path().join(name);
-    fs::write(at("short.toml"), "[physics]\nduration = 20.0\n").unwrap();
-    let simulate = |body: &Path| {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_bodyschema"));
-        command.current_dir(&folder).args([
-            "simulate",
-            "--settings",
-            "short.toml",
-            "--out",
-            "moved",
-            "--body",
-        ]);
-        command.arg(body).output().unwrap()
-    };
-    let human = Path::new(env!("CARGO_MANIFEST_DIR")).join("bodies/human.toml");
-    let output = simulate(&human);
-    assert!(output.status.success(), "{output:?}");
-    let told = String::from_utf8(output.stdout).unwrap();
-    assert!(told.starts_with("200 samples of 634 sensors on 13 parts"), "{told}");
-    let names = fs::read_to_string(at("moved/names.csv")).unwrap();
+    let folder = Folder::new();
+    folder.write("short.toml", "physics.duration = 20.0");
+    let simulate =
+        |body: &Path| Said::by(folder.command("simulate --settings short.toml --out moved --body").arg(body));
+    let said = simulate(&repository("bodies/human.toml"));
+    assert_eq!(said.status, Some(0), "{said:?}");
+    assert!(said.out.starts_with("200 samples of 634 sensors on 13 parts"), "{said:?}");
+    let names = folder.text("moved/names.csv");
     assert!(names.starts_with("part,name\n0,pelvis\n1,chest\n"), "{names}");
     // Three universal joints, five balls and four hinges.
-    let angles = fs::read_to_string(at("moved/joint-angles.csv")).unwrap();
+    let angles = folder.text("moved/joint-angles.csv");
     let header = angles.lines().next().unwrap();
     assert_eq!(header.split(',').count() - 1, 3 * 2 + 5 * 3 + 4, "{header}");
     assert!(header.contains("joint2_angle3_rad,joint3_angle1_rad"), "{header}");
 
-    fs::write(at("wrong.toml"), "[[part]]\nname = \"trunk\"\nshape = \"sphere\"\nradius = 0.1\n").unwrap();
-    let output = simulate(&at("wrong.toml"));
-    let told = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(output.status.code(), Some(2));
-    assert!(told.contains("part `trunk`: it lacks centre") && told.lines().count() == 1, "{told}");
+    folder.write("wrong.toml", "[[part]]\nname = \"trunk\"\nshape = \"sphere\"\nradius = 0.1\n");
+    simulate(&folder.at("wrong.toml")).is_refused("part `trunk`: it lacks centre");
 }
 
 #[test]
@@ -79,8 +65,7 @@ fn noise_costs_fewer_parts_if_it_counts_as_no_touch() {
     (settings.physics.duration, settings.physics.step) = (1000.0, 0.005);
     let Settings { motion, physics, sense: tactile_sense, quantise, .. } = &settings;
     for name in ["star", "chain-6"] {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("bodies/{name}.toml"));
-        let NamedBody { agent, .. } = read_body(&path).unwrap();
+        let NamedBody { agent, .. } = read_body(&repository(format!("bodies/{name}.toml"))).unwrap();
         let rng = &mut stream(11, 1, "motion", 0);
         let trajectory = simulate(&agent, motion, physics, tactile_sense.interval, rng, &|| ()).unwrap();
         let mut tactile = sense(&agent, &trajectory, tactile_sense);
@@ -106,64 +91,48 @@ fn noise_costs_fewer_parts_if_it_counts_as_no_touch() {
 
 #[test]
 fn the_study_of_bodies_repeats_itself_and_names_mistakes() {
-    let folder = tempfile::tempdir().unwrap();
-    let at = |name: &str| folder.path().join(name);
-    let chain =
-        fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("bodies/chain-3.toml")).unwrap();
-    fs::write(at("chain-3.toml"), &chain).unwrap();
+    let folder = Folder::new();
+    let chain = read("bodies/chain-3.toml");
+    folder.write("chain-3.toml", &chain);
     let design = |coordinations: &str| {
         format!(
             "seed = 4\nmovements = 2\nchains = 2\ncoordinations = {coordinations}\nbodies = [\"chain-3.toml\"]\n\
              [[recording]]\nsamples = 1000\nnoise = 0.0\n[[recording]]\nsamples = 500\nnoise = 0.1\n"
         )
     };
-    let study = |name: &str, out: &str, more: &[&str]| {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_bodyschema"));
-        command
-            .current_dir(&folder)
-            .args(["bodies", "--design", name, "--out", out])
-            .args(more)
-            .output()
-            .unwrap()
+    // What a study says, which is a line of what it goes on from.
+    let study = |arguments: &str| {
+        let said = folder.run(&format!("bodies --design {arguments}"));
+        assert_eq!(said.status, Some(0), "{said:?}");
+        said.err
     };
-    fs::write(at("bodies.toml"), design("[0.0, 0.5]")).unwrap();
-    let output = study("bodies.toml", "whole", &[]);
-    assert!(output.status.success(), "{output:?}");
-    let page = fs::read_to_string(at("whole/bodies.md")).unwrap();
+    folder.write("bodies.toml", design("[0.0, 0.5]"));
+    study("bodies.toml --out whole");
+    let page = folder.text("whole/bodies.md");
     assert!(page.contains("| chain-3 | 3 | ") && page.contains("| 0.5 | 500 | 0.1 | 2 |"), "{page}");
-    assert_eq!(fs::read_to_string(at("whole/recordings.csv")).unwrap().lines().count(), 9);
+    assert_eq!(folder.rows("whole/recordings.csv").len(), 8);
     // One movement now, and the other one later.
-    assert!(study("bodies.toml", "again", &["--movements", "1"]).status.success());
-    let page = fs::read_to_string(at("again/bodies.md")).unwrap();
+    study("bodies.toml --out again --movements 1");
+    let page = folder.text("again/bodies.md");
     assert!(page.contains("of each at each p: 1;") && page.contains("| 0.5 | 500 | 0.1 | 1 |"), "{page}");
-    assert!(fs::read_to_string(at("again/design.toml")).unwrap().contains("movements = 1\n"));
-    let output = study("bodies.toml", "again", &[]);
-    assert!(output.status.success(), "{output:?}");
-    assert!(
-        String::from_utf8(output.stderr).unwrap().contains("continuing from what an earlier run finished")
-    );
+    assert!(folder.text("again/design.toml").contains("movements = 1\n"));
+    let told = study("bodies.toml --out again");
+    assert!(told.contains("continuing from what an earlier run finished"), "{told}");
     // Page and picture are made from the tables alone.
-    fs::remove_dir_all(at("again/figures")).unwrap();
-    fs::remove_file(at("again/bodies.md")).unwrap();
-    let plot = Command::new(env!("CARGO_BIN_EXE_bodyschema")).arg("plot").arg(at("again")).output().unwrap();
-    assert!(plot.status.success(), "{plot:?}");
+    fs::remove_dir_all(folder.at("again/figures")).unwrap();
+    fs::remove_file(folder.at("again/bodies.md")).unwrap();
+    folder.succeed("plot again");
     for file in ["recordings.csv", "edges.csv", "bodies.md", "figures/bodies.svg", "manifest.json"] {
-        assert_eq!(
-            fs::read(at("whole").join(file)).unwrap(),
-            fs::read(at("again").join(file)).unwrap(),
-            "{file}"
-        );
+        assert!(folder.text(format!("whole/{file}")) == folder.text(format!("again/{file}")), "{file}");
     }
     // What was kept of another body is not used, whatever its file.
-    fs::write(at("chain-3.toml"), chain.replace("radius = ", "density = 900\nradius = ")).unwrap();
-    let output = study("bodies.toml", "again", &["--movements", "1"]);
-    let told = String::from_utf8(output.stderr).unwrap();
-    assert!(output.status.success() && told.contains("of other settings"), "{told}");
+    folder.write("chain-3.toml", chain.replace("radius = ", "density = 900\nradius = "));
+    let told = study("bodies.toml --out again --movements 1");
+    assert!(told.contains("of other settings"), "{told}");
     // Joints that are always locked: nothing is felt, and nothing found.
-    fs::write(at("locked.toml"), design("[1.0]")).unwrap();
-    let output = study("locked.toml", "locked", &["--movements", "1"]);
-    assert!(output.status.success(), "{output:?}");
-    let rows = fs::read_to_string(at("locked/recordings.csv")).unwrap();
+    folder.write("locked.toml", design("[1.0]"));
+    study("locked.toml --out locked --movements 1");
+    let rows = folder.text("locked/recordings.csv");
     let row = rows.lines().nth(1).unwrap();
     assert!(row.starts_with("chain-3,1.0,1,1000,0.0,true,3,0,0.0,false,false,"), "{rows}");
     for (wrong, expected) in [
@@ -176,9 +145,7 @@ fn the_study_of_bodies_repeats_itself_and_names_mistakes() {
         ),
         (design("[1.5]"), "motion.coordination"),
     ] {
-        fs::write(at("wrong.toml"), wrong).unwrap();
-        let output = study("wrong.toml", "wrong", &[]);
-        let told = String::from_utf8(output.stderr).unwrap();
-        assert!(output.status.code() == Some(2) && told.contains(expected), "{expected}: {told}");
+        folder.write("wrong.toml", wrong);
+        folder.refuse("bodies --design wrong.toml --out wrong", expected);
     }
 }

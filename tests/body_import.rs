@@ -2,33 +2,31 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
 
 use bodyschema::files::body::{NamedBody, read_body};
 use bodyschema::stages::agent::{Freedom, Shape};
 
+mod support;
+
+use support::folder::Folder;
+use support::repository::repository;
+use support::said::Said;
+
 fn data(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/import").join(name)
+    repository("tests/data/import").join(name)
 }
 
-fn import(file: &Path, options: &[&str], out: &Path) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_bodyschema"))
-        .args(["body", "import"])
-        .arg(file)
-        .args(options)
-        .arg("--out")
-        .arg(out)
-        .output()
-        .expect("the program starts")
+/// Makes `body.toml` of a description.
+fn import(folder: &Folder, file: &Path, options: &str) -> Said {
+    Said::by(folder.command(&format!("body import {options} --out body.toml")).arg(file))
 }
 
 /// The body that a description becomes, and what the program says of it.
-fn imported(name: &str, options: &[&str]) -> (NamedBody, String) {
-    let folder = tempfile::tempdir().unwrap();
-    let out = folder.path().join("body.toml");
-    let output = import(&data(name), options, &out);
-    assert!(output.status.success() && output.stderr.is_empty(), "{output:?}");
-    (read_body(&out).unwrap(), String::from_utf8(output.stdout).unwrap())
+fn imported(name: &str, options: &str) -> (NamedBody, String) {
+    let folder = Folder::new();
+    let said = import(&folder, &data(name), options);
+    assert_eq!((said.status, &*said.err), (Some(0), ""), "{said:?}");
+    (read_body(&folder.at("body.toml")).unwrap(), said.out)
 }
 
 #[track_caller]
@@ -38,7 +36,7 @@ fn near(found: [f64; 3], expected: [f64; 3]) {
 
 #[test]
 fn mjcf_becomes_a_body() {
-    let (body, told) = imported("arm.xml", &[]);
+    let (body, told) = imported("arm.xml", "");
     assert!(told.starts_with("5 parts, in "), "{told}");
     assert!(told.contains("joints: 1 universal, 2 hinge, 0 ball, 1 fixed\n"), "{told}");
     assert_eq!(body.rigid_names(), ["trunk", "upper arm", "forearm", "hand + hand/2"]);
@@ -59,7 +57,7 @@ fn mjcf_becomes_a_body() {
 
 #[test]
 fn urdf_becomes_a_body() {
-    let (body, told) = imported("arm.urdf", &["--per-area", "100"]);
+    let (body, told) = imported("arm.urdf", "--per-area 100");
     assert!(told.contains("joints: 0 universal, 1 hinge, 0 ball, 1 fixed\n"), "{told}");
     assert_eq!(body.rigid_names(), ["base", "arm + tool"]);
     let agent = &body.agent;
@@ -71,14 +69,13 @@ fn urdf_becomes_a_body() {
     assert_eq!(agent.joints[0].freedom, Freedom::Hinge([0.0, 1.0, 0.0]));
     let sensors = |at: usize| agent.sites.iter().filter(|site| site.part == at).count();
     assert_eq!([0, 1, 2].map(sensors), [19, 11, 1]);
-    let (body, _) = imported("arm.urdf", &["--sensors-per-part", "7"]);
+    let (body, _) = imported("arm.urdf", "--sensors-per-part 7");
     assert_eq!(body.agent.sites.len(), 21);
 }
 
 #[test]
 fn a_mistake_is_one_line_and_leaves_no_file() {
-    let folder = tempfile::tempdir().unwrap();
-    let out = folder.path().join("body.toml");
+    let folder = Folder::new();
     for (name, expected) in [
         ("mesh.xml", "mesh.xml: line 6: geom of body `arm` is of type `mesh`; make it a box, sphere"),
         ("cut.xml", "cut.xml: this is not well-formed XML"),
@@ -87,21 +84,16 @@ fn a_mistake_is_one_line_and_leaves_no_file() {
         ("number.urdf", "number.urdf: line 2: sphere of link `a` has radius `wide`, which must be a number"),
         ("absent.xml", "absent.xml: cannot be read"),
     ] {
-        let output = import(&data(name), &[], &out);
-        let told = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(output.status.code(), Some(2), "{name}: {told}");
-        assert!(told.starts_with("bodyschema: ") && told.contains(expected), "{name}: {told}");
-        assert_eq!((told.lines().count(), output.stdout.len()), (1, 0), "{name}: {told}");
-        assert!(!out.exists(), "{name}");
+        let said = import(&folder, &data(name), "");
+        said.is_refused(expected);
+        assert!(said.err.starts_with("bodyschema: "), "{name}: {}", said.err);
+        assert!(!folder.at("body.toml").exists(), "{name}");
     }
     // The description itself is not written over.
-    let robot = folder.path().join("arm.xml");
-    fs::copy(data("arm.xml"), &robot).unwrap();
-    let output = import(&robot, &[], &robot);
-    assert_eq!(output.status.code(), Some(2));
-    assert!(String::from_utf8(output.stderr).unwrap().contains("is the input file"));
-    assert_eq!(fs::read(&robot).unwrap(), fs::read(data("arm.xml")).unwrap());
-    let both = import(&data("arm.xml"), &["--per-area", "9", "--sensors-per-part", "9"], &out);
-    assert_eq!(both.status.code(), Some(2));
-    assert!(!out.exists());
+    fs::copy(data("arm.xml"), folder.at("arm.xml")).unwrap();
+    folder.refuse("body import arm.xml --out arm.xml", "is the input file");
+    assert_eq!(folder.bytes("arm.xml"), fs::read(data("arm.xml")).unwrap());
+    let both = import(&folder, &data("arm.xml"), "--per-area 9 --sensors-per-part 9");
+    assert_eq!(both.status, Some(2));
+    assert!(!folder.at("body.toml").exists());
 }

@@ -1,32 +1,14 @@
-//! `CITATION.cff` is valid by cffconvert (skipped with a message where it is not installed), names this version, and says what the
+//! `CITATION.cff` is valid by cffconvert (skipped without it), names this version, and says what the
 //! article and the committed confirmation say.
 
-use std::fs;
-use std::io::ErrorKind;
-use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Whether cffconvert accepts a file; None if there is no cffconvert.
-fn valid(file: &Path) -> Option<(bool, String)> {
-    match Command::new("cffconvert").arg("--validate").arg("-i").arg(file).output() {
-        Err(error) if error.kind() == ErrorKind::NotFound => {
-            eprintln!("skipped: cffconvert is missing (pip install -r tests/requirements.txt)");
-            None
-        }
-        output => {
-            let output = output.unwrap();
-            Some((output.status.success(), String::from_utf8_lossy(&output.stderr).into_owned()))
-        }
-    }
-}
+mod support;
 
-fn path(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join(name)
-}
-
-fn read(name: &str) -> String {
-    fs::read_to_string(path(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
-}
+use support::folder::{Folder, rows};
+use support::repository::{read, repository};
+use support::said::Said;
+use support::tools::run;
 
 fn citation() -> String {
     read("CITATION.cff")
@@ -46,13 +28,16 @@ fn below<'a>(text: &'a str, key: &str) -> Vec<&'a str> {
 
 #[test]
 fn the_citation_is_valid() {
-    let folder = tempfile::tempdir().unwrap();
-    let file = folder.path().join("CITATION.cff");
-    fs::write(&file, citation()).unwrap();
-    let Some((accepted, said)) = valid(&file) else { return };
-    assert!(accepted, "{said}");
-    fs::write(&file, citation().replace("type: article", "type: paper")).unwrap();
-    assert!(!valid(&file).unwrap().0, "a type that does not exist");
+    let folder = Folder::new();
+    let validate = |citation: String| -> Option<Said> {
+        folder.write("CITATION.cff", citation);
+        let mut command = Command::new("cffconvert");
+        run(command.arg("--validate").arg("-i").arg(folder.at("CITATION.cff")))
+    };
+    let Some(said) = validate(citation()) else { return };
+    assert_eq!(said.status, Some(0), "{said:?}");
+    let said = validate(citation().replace("type: article", "type: paper")).unwrap();
+    assert_ne!(said.status, Some(0), "a type that does not exist");
 }
 
 #[test]
@@ -83,17 +68,12 @@ fn said(row: &[f64; 5]) -> [String; 3] {
 
 #[test]
 fn the_abstract_has_the_confirmation() {
-    let mut table = csv::Reader::from_path(path("docs/shown/confirm/exp1/claims.csv")).unwrap();
-    let names = table.headers().unwrap().clone();
-    let column = |name: &str| names.iter().position(|other| other == name).unwrap();
-    let (id, counting, reading) = (column("id"), column("counting"), column("reading"));
-    let row = table
-        .records()
-        .map(Result::unwrap)
-        .find(|row| [&row[id], &row[counting], &row[reading]] == ["tree-accuracy", "all-draws", "equations"]);
-    let row = row.expect("the headline");
-    let numbers = ["value", "low", "high", "accepted_low", "accepted_high"]
-        .map(|name| row[column(name)].parse().unwrap());
+    let claims = rows(&repository("docs/shown/confirm/exp1/claims.csv"));
+    let headline = ["tree-accuracy", "all-draws", "equations"];
+    let row =
+        claims.iter().find(|row| ["id", "counting", "reading"].map(|name| &row[name]) == headline).unwrap();
+    let numbers =
+        ["value", "low", "high", "accepted_low", "accepted_high"].map(|name| row[name].parse().unwrap());
     let text = below(&citation(), "abstract: >-").join(" ");
     for words in said(&numbers) {
         assert!(text.contains(&words), "the abstract lacks: {words}");
@@ -115,7 +95,7 @@ fn says_what_ran(text: &str, finished: bool) -> bool {
 #[test]
 fn the_abstract_says_whether_experiment_2_of_the_confirmation_is_finished() {
     let text = below(&citation(), "abstract: >-").join(" ");
-    let finished = path("docs/shown/confirm/exp2/claims.csv").exists();
+    let finished = repository("docs/shown/confirm/exp2/claims.csv").exists();
     assert!(
         says_what_ran(&text, finished),
         "experiment 2 is{} finished: {text}",

@@ -2,23 +2,22 @@
 //! `reproduce/claims.py` makes of the committed results.
 
 use std::collections::BTreeSet;
-use std::fs;
-use std::path::Path;
-use std::process::Command;
 
 use toml::{Table, Value};
+
+mod support;
+
+use support::folder::Folder;
+use support::repository::{read, repository};
+use support::said::Said;
+use support::tools::python;
 
 /// Most words of a quotation.
 const WORDS: usize = 15;
 
-fn read(name: &str) -> String {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(name);
-    fs::read_to_string(&path).unwrap_or_else(|error| panic!("{name}: {error}"))
-}
-
 /// The tables of a kind in a file of `reproduce`.
 fn tables(name: &str, kind: &str) -> Vec<Value> {
-    let file: Table = read(&format!("reproduce/{name}")).parse().unwrap();
+    let file: Table = read(format!("reproduce/{name}")).parse().unwrap();
     file[kind].as_array().unwrap().clone()
 }
 
@@ -75,7 +74,7 @@ fn every_kind_of_measure_has_a_function_and_a_test_that_judges_such_a_claim() {
     assert_eq!(claims.iter().map(kind_of).collect::<BTreeSet<_>>(), kinds);
     for measure in &measures {
         let [kind, file, function, test] = ["kind", "file", "function", "test"].map(|key| text(measure, key));
-        assert!(body(&read(&format!("src/analysis/{file}")), function).is_some(), "{file} has no {function}");
+        assert!(body(&read(format!("src/analysis/{file}")), function).is_some(), "{file} has no {function}");
         let judged = body(&tests, test).unwrap_or_else(|| panic!("no test {test}"));
         let of_kind = ids(&claims.iter().filter(|claim| kind_of(claim) == kind).cloned().collect::<Vec<_>>());
         assert!(of_kind.iter().any(|id| judged.contains(&format!("\"{id}\""))), "{test} judges no {kind}");
@@ -83,25 +82,18 @@ fn every_kind_of_measure_has_a_function_and_a_test_that_judges_such_a_claim() {
     assert!(body(&tests, "no_such_test").is_none());
 }
 
-/// Skipped with a message where there is no Python 3.11.
 #[test]
 fn the_page_is_that_of_the_committed_results() {
-    let modern = Command::new("python3").args(["-c", "import tomllib"]).output();
-    if !modern.is_ok_and(|output| output.status.success()) {
-        eprintln!("skipped: Python 3.11 is missing");
-        return;
-    }
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let folder = tempfile::tempdir().unwrap();
-    let is_fresh = |page: &str| {
-        let copy = folder.path().join("claims.md");
-        fs::write(&copy, page).unwrap();
-        let script = root.join("reproduce/claims.py");
-        Command::new("python3").arg(script).arg("--check").arg(copy).output().unwrap()
+    let folder = Folder::new();
+    let Some(mut script) = python(&repository("reproduce/claims.py")) else { return };
+    script.arg("--check").arg(folder.at("claims.md"));
+    let mut check = |page: &str| {
+        folder.write("claims.md", page);
+        Said::by(&mut script)
     };
     let page = read("docs/shown/claims.md");
-    let output = is_fresh(&page);
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let said = check(&page);
+    assert_eq!(said.status, Some(0), "{said:?}");
     let stale = page.replacen("**not reproduced**", "**reproduced**", 1);
-    assert!(stale != page && !is_fresh(&stale).status.success(), "another verdict");
+    assert!(stale != page && check(&stale).status != Some(0), "another verdict");
 }

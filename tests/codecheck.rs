@@ -1,19 +1,21 @@
 //! `codecheck.yml` names what `reproduce/codecheck.toml` has rerun, and `reproduce/codecheck.py` tells results that agree from
-//! those that do not. The runs of codecheck.py are skipped with a message where there is no Python 3.11.
+//! those that do not. The runs of codecheck.py need Python 3.11.
 
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
-use std::process::Command;
 
 use toml::{Table, Value};
 
-fn root() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-}
+mod support;
+
+use support::folder::Folder;
+use support::repository::{read, repository};
+use support::said::Said;
+use support::tools::python;
 
 fn rules() -> Table {
-    fs::read_to_string(root().join("reproduce/codecheck.toml")).unwrap().parse().unwrap()
+    read("reproduce/codecheck.toml").parse().unwrap()
 }
 
 fn list<'a>(table: &'a Value, key: &str) -> Vec<&'a Value> {
@@ -49,19 +51,18 @@ fn the_manifest_is_what_is_rerun() {
     let by_themselves = parts.iter().flat_map(|part| list(part, "compares_itself"));
     let rerun: BTreeSet<String> =
         compared.chain(by_themselves.map(|file| file.as_str().unwrap().to_owned())).collect();
-    let manifest = fs::read_to_string(root().join("codecheck.yml")).unwrap();
+    let manifest = read("codecheck.yml");
     assert!(manifest.starts_with("---\n"), "the explicit document marker");
     let named: BTreeSet<String> =
         manifest.lines().filter_map(|line| line.strip_prefix("  - file: ")).map(str::to_owned).collect();
     assert_eq!(named, rerun);
-    assert!(named.iter().all(|file| root().join(file).is_file()), "{named:?}");
+    assert!(named.iter().all(|file| repository(file).is_file()), "{named:?}");
 }
 
 /// The minutes of codecheck.toml are also in the manifest and in the table of docs/check.md.
 #[test]
 fn minutes_are_the_same_everywhere() {
     let rules = rules();
-    let read = |file: &str| fs::read_to_string(root().join(file)).unwrap();
     let (manifest, page) = (read("codecheck.yml"), read("docs/check.md"));
     let build = rules["build_minutes"].as_integer().unwrap();
     assert!(page.contains(&format!("| build | {build} |")), "{build}");
@@ -83,18 +84,14 @@ fn minutes_are_the_same_everywhere() {
 fn commands_exist() {
     for part in rules()["part"].as_array().unwrap() {
         let command = list(part, "command")[0].as_str().unwrap();
-        assert!(root().join(command).is_file(), "{command}");
+        assert!(repository(command).is_file(), "{command}");
     }
 }
 
 /// A folder with the committed results of experiment 2, once as committed and once as if made anew.
-fn rerun() -> tempfile::TempDir {
-    let folder = tempfile::tempdir().unwrap();
-    let put = |from: &str, to: &str| {
-        let to = folder.path().join(to);
-        fs::create_dir_all(to.parent().unwrap()).unwrap();
-        fs::copy(root().join(from), to).unwrap();
-    };
+fn rerun() -> Folder {
+    let folder = Folder::new();
+    let put = |from: &str, to: &str| folder.write(to, fs::read(repository(from)).unwrap());
     for file in ["reproduce/codecheck.py", "reproduce/codecheck.toml", "docs/shown/exp2/manifest.json"] {
         put(file, file);
     }
@@ -108,33 +105,25 @@ fn rerun() -> tempfile::TempDir {
     folder
 }
 
-/// Status and what is printed; None without Python 3.11.
+/// Status and what is printed; none without Python 3.11.
 fn compare(folder: &Path, only: &str) -> Option<(Option<i32>, String)> {
-    let modern = Command::new("python3").args(["-c", "import tomllib"]).output();
-    if !modern.is_ok_and(|output| output.status.success()) {
-        eprintln!("skipped: Python 3.11 is missing");
-        return None;
-    }
-    let script = folder.join("reproduce/codecheck.py");
-    let output =
-        Command::new("python3").arg(script).args(["--compare-only", "--only", only]).output().unwrap();
-    let said = [output.stdout, output.stderr].concat();
-    Some((output.status.code(), String::from_utf8(said).unwrap()))
+    let mut script = python(&folder.join("reproduce/codecheck.py"))?;
+    let Said { status, out, err } = Said::by(script.args(["--compare-only", "--only", only]));
+    Some((status, out + &err))
 }
 
 /// The committed tree accuracy at p = 0.9 and d = 14, as it is written.
 fn committed_rate() -> String {
-    let table = fs::read_to_string(root().join("docs/shown/exp2/fig11b-tree.csv")).unwrap();
+    let table = read("docs/shown/exp2/fig11b-tree.csv");
     let row = table.lines().find_map(|line| line.strip_prefix("dpgmm-lj,,all-draws,0.9,14,")).unwrap();
     row.split(',').next().unwrap().to_owned()
 }
 
 /// Changes one file of the rerun.
-fn change(folder: &Path, file: &str, from: &str, to: &str) {
-    let path = folder.join("results/exp2").join(file);
-    let text = fs::read_to_string(&path).unwrap();
+fn change(folder: &Folder, file: &str, from: &str, to: &str) {
+    let text = folder.text(file);
     assert!(text.contains(from), "{file} has no {from}");
-    fs::write(path, text.replace(from, to)).unwrap();
+    folder.write(file, text.replace(from, to));
 }
 
 #[test]
@@ -147,11 +136,11 @@ fn results_agree_if_they_are_the_same_or_within_their_tolerance() {
     // The rate at p = 0.9: within its interval, and beyond any.
     let rate = committed_rate();
     let near = (rate.parse::<f64>().unwrap() - 0.01).to_string();
-    change(folder.path(), "figures/fig11b-tree.csv", &rate, &near);
+    change(&folder, "results/exp2/figures/fig11b-tree.csv", &rate, &near);
     let (status, said) = compare(folder.path(), "exp2").unwrap();
     assert_eq!(status, Some(0), "{said}");
     assert!(said.contains("4 same bytes, 1 within tolerance"), "{said}");
-    change(folder.path(), "figures/fig11b-tree.csv", &near, "0.0138");
+    change(&folder, "results/exp2/figures/fig11b-tree.csv", &near, "0.0138");
     let (status, said) = compare(folder.path(), "exp2").unwrap();
     assert_eq!(status, Some(1), "{said}");
     let differs = format!("0.9/14: 0.0138, committed {}", &rate[..5]);
@@ -163,8 +152,8 @@ fn accepted_ranges_are_the_same_and_no_file_is_missing() {
     let folder = rerun();
     let Some((_, said)) = compare(folder.path(), "exp2") else { return };
     assert!(said.ends_with("0 differs\n"), "{said}");
-    change(folder.path(), "claims.csv", ",0.746,0.946,", ",0.6,0.946,");
-    fs::remove_file(folder.path().join("results/exp2/figures/fig11a-ari.csv")).unwrap();
+    change(&folder, "results/exp2/claims.csv", ",0.746,0.946,", ",0.6,0.946,");
+    fs::remove_file(folder.at("results/exp2/figures/fig11a-ari.csv")).unwrap();
     let (status, said) = compare(folder.path(), "exp2").unwrap();
     assert_eq!(status, Some(1), "{said}");
     assert!(said.contains("accepted_low is '0.6', committed '0.746'") && said.contains("missing"), "{said}");
@@ -174,19 +163,17 @@ fn accepted_ranges_are_the_same_and_no_file_is_missing() {
 #[test]
 fn on_a_machine_of_the_same_kind_bytes_are_the_same() {
     let folder = rerun();
-    let witness = folder.path().join("results/exp2/p-0.9/simulation-1/body-map.npy");
-    fs::create_dir_all(witness.parent().unwrap()).unwrap();
-    fs::write(&witness, "map").unwrap();
-    let manifest = folder.path().join("docs/shown/exp2/manifest.json");
+    let witness = "results/exp2/p-0.9/simulation-1/body-map.npy";
+    folder.write(witness, "map");
     let hash = "60be9861750facbfad8758254a2f76c0cfe78d54459a3bc187d49b1401fcd8e8";
     let hashed = r#"{"outputs": [{"file": "p-0.9/simulation-1/body-map.npy", "sha256": "HASH"}]}"#;
-    fs::write(&manifest, hashed.replace("HASH", hash)).unwrap();
+    folder.write("docs/shown/exp2/manifest.json", hashed.replace("HASH", hash));
     let rate = committed_rate();
-    change(folder.path(), "figures/fig11b-tree.csv", &rate, &format!("{rate}1"));
+    change(&folder, "results/exp2/figures/fig11b-tree.csv", &rate, &format!("{rate}1"));
     let Some((status, said)) = compare(folder.path(), "exp2") else { return };
     assert_eq!(status, Some(1), "{said}");
     assert!(said.contains("on a machine of the same kind the bytes must be the same"), "{said}");
-    fs::write(&witness, "another map").unwrap();
+    folder.write(witness, "another map");
     assert_eq!(compare(folder.path(), "exp2").unwrap().0, Some(0));
 }
 
@@ -194,17 +181,13 @@ fn on_a_machine_of_the_same_kind_bytes_are_the_same() {
 #[test]
 fn a_part_that_is_like_others_is_compared_as_they_are() {
     let folder = rerun();
-    let rules = folder.path().join("reproduce/codecheck.toml");
-    let toml = fs::read_to_string(&rules).unwrap();
-    let like = r#"like = ["exp1", "exp2"]"#;
-    assert!(toml.contains(like));
-    fs::write(&rules, toml.replace(like, r#"like = ["exp2"]"#)).unwrap();
+    change(&folder, "reproduce/codecheck.toml", r#"like = ["exp1", "exp2"]"#, r#"like = ["exp2"]"#);
     let Some((status, said)) = compare(folder.path(), "confirm") else { return };
     assert_eq!((status, said.lines().count()), (Some(2), 1), "{said}");
     assert!(said.contains("docs/shown/confirm/exp2 is missing"), "{said}");
 
     for base in ["docs/shown", "results"] {
-        let base = folder.path().join(base);
+        let base = folder.at(base);
         fs::create_dir(base.join("confirm")).unwrap();
         fs::rename(base.join("exp2"), base.join("confirm/exp2")).unwrap();
     }
@@ -215,7 +198,7 @@ fn a_part_that_is_like_others_is_compared_as_they_are() {
 
 #[test]
 fn an_unknown_part_is_one_line_and_status_2() {
-    let Some((status, said)) = compare(root(), "exp3") else { return };
+    let Some((status, said)) = compare(&repository(""), "exp3") else { return };
     assert_eq!((status, said.lines().count()), (Some(2), 1), "{said}");
     assert!(said.contains("there is no part 'exp3'; the parts are inference, exp1"), "{said}");
 }

@@ -3,29 +3,14 @@
 
 use std::collections::BTreeSet;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
+
+mod support;
+
+use support::repository::{pages, read, repository};
 
 /// Numbered equations of the paper.
 const EQUATIONS: usize = 27;
-
-fn root() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-}
-
-fn read(name: &str) -> String {
-    fs::read_to_string(root().join(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
-}
-
-/// The pages that a reader comes to.
-fn pages() -> Vec<PathBuf> {
-    let names = ["README.md", "CONTRIBUTING.md", "CHANGELOG.md", "tests/README.md", "benches/README.md"];
-    let docs = fs::read_dir(root().join("docs")).unwrap().map(|entry| entry.unwrap().path());
-    let docs = docs.filter(|path| path.extension().is_some_and(|extension| extension == "md"));
-    let shown =
-        fs::read_dir(root().join("docs/shown")).unwrap().map(|entry| entry.unwrap().path().join("README.md"));
-    let shown = shown.filter(|page| page.is_file());
-    names.into_iter().map(|name| root().join(name)).chain(docs).chain(shown).collect()
-}
 
 /// Targets of the links and pictures of a page, without those to other sites.
 fn links(text: &str) -> Vec<String> {
@@ -65,7 +50,7 @@ fn every_link_leads_somewhere() {
         let text = fs::read_to_string(&page).unwrap();
         assert_eq!(broken(&page, &text), [""; 0], "{}", page.display());
     }
-    let page = root().join("README.md");
+    let page = repository("README.md");
     let text = "[a](docs/nowhere.md) [b](README.md#no-such-heading) ![c](docs/reference.md) [d](https://example.org)";
     assert_eq!(broken(&page, text), ["docs/nowhere.md", "README.md#no-such-heading"]);
 }
@@ -96,7 +81,7 @@ fn every_equation_of_the_paper_has_a_file_that_exists() {
     assert_eq!(missing, [0; 0], "equations without a row");
     let files: Vec<String> = links(table).into_iter().filter(|target| target.ends_with(".rs")).collect();
     assert!(files.len() >= 15, "{files:?}");
-    assert!(files.iter().all(|file| root().join("docs").join(file).exists()), "{files:?}");
+    assert!(files.iter().all(|file| repository("docs").join(file).exists()), "{files:?}");
     assert_eq!(equations("| 3 | a |\n| 5 to 7, 9 | b |\nnine 11"), BTreeSet::from([3, 5, 6, 7, 9]));
 }
 

@@ -1,4 +1,5 @@
-//! The packages hold what a build needs and little more, and nothing that they depend on needs a younger Rust than they say.
+//! The packages hold what a build needs and little more, nothing that they depend on needs a younger Rust than they say, and
+//! tests and program are one build.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -7,18 +8,19 @@ use std::process::Command;
 
 use serde_json::Value;
 
+mod support;
+
+use support::repository::{read, repository};
+use support::said::Said;
+
 /// Largest package, in bytes before it is compressed.
 const BYTES: u64 = 2_000_000;
 
-fn root() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-}
-
 fn cargo(arguments: &str) -> String {
     let mut command = Command::new(env!("CARGO"));
-    let output = command.current_dir(root()).args(arguments.split(' ')).output().unwrap();
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    String::from_utf8(output.stdout).unwrap()
+    let said = Said::by(command.current_dir(repository("")).args(arguments.split(' ')));
+    assert_eq!(said.status, Some(0), "{}", said.err);
+    said.out
 }
 
 fn packaged(package: &str) -> BTreeSet<String> {
@@ -33,11 +35,12 @@ fn bytes(files: &BTreeSet<String>, folder: &Path) -> u64 {
 
 /// Files that a source file takes in, by their path in the package.
 fn taken_in(file: &str) -> Vec<String> {
-    let text = fs::read_to_string(root().join(file)).unwrap();
+    let text = read(file);
     let names = text.split("include_str!(\"").skip(1).filter_map(|rest| rest.split_once('"')).map(|it| it.0);
     let folder = Path::new(file).parent().unwrap();
-    let path = |name: &str| root().join(folder).join(name).canonicalize().unwrap();
-    let within = |name: &str| path(name).strip_prefix(root().canonicalize().unwrap()).unwrap().to_owned();
+    let path = |name: &str| repository(folder).join(name).canonicalize().unwrap();
+    let within =
+        |name: &str| path(name).strip_prefix(repository("").canonicalize().unwrap()).unwrap().to_owned();
     names.map(|name| within(name).display().to_string()).collect()
 }
 
@@ -51,7 +54,7 @@ fn the_packages_hold_what_a_build_needs_and_little_more() {
     assert!(missing.is_empty(), "{missing:?}");
 
     let of_bindings = packaged("ode-sys");
-    for (files, folder) in [(&of_program, root().to_owned()), (&of_bindings, root().join("ode-sys"))] {
+    for (files, folder) in [(&of_program, repository("")), (&of_bindings, repository("ode-sys"))] {
         for file in ["Cargo.toml", "README.md", "LICENSE-MIT", "LICENSE-APACHE", "build.rs", "src/lib.rs"] {
             assert!(files.contains(file), "{file}: {files:?}");
         }
@@ -87,4 +90,20 @@ fn no_dependency_needs_a_younger_rust() {
     assert!(packages.len() > 50);
     assert_eq!(younger(packages, &rust_version(own)), [""; 0]);
     assert!(younger(packages, &[1, 70]).contains(&"\"bodyschema\"".to_owned()), "what is younger is seen");
+}
+
+/// The packages of the program and their features, as a build of the program or of its tests has them.
+fn features(edges: &str) -> BTreeSet<String> {
+    let tree = cargo(&format!(
+        "tree --package bodyschema --locked --offline --edges {edges} --prefix none --no-dedupe --format {{p}}[{{f}}]"
+    ));
+    tree.lines().map(str::to_owned).collect()
+}
+
+/// Otherwise whoever runs an experiment after the tests, or the other way round, waits for a second build of all that differs.
+#[test]
+fn tests_ask_no_package_of_the_program_for_other_features() {
+    let (program, tests) = (features("normal,build"), features("normal,build,dev"));
+    assert!(program.len() > 50 && tests.len() > program.len());
+    assert_eq!(program.difference(&tests).collect::<Vec<_>>(), [""; 0], "give Cargo.toml the same features");
 }

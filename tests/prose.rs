@@ -1,10 +1,13 @@
 //! The pages can be read by somebody whose second language is English: their sentences are short, and they use the field's words.
 
 use std::fs;
-use std::path::{Path, PathBuf};
 
 use pulldown_cmark::{Event, Options, Parser, Tag, TagEnd};
 use unicode_segmentation::UnicodeSegmentation;
+
+mod support;
+
+use support::repository::{pages, read};
 
 /// Most words of a sentence, on average over a page.
 const AVERAGE: f64 = 25.0;
@@ -31,26 +34,6 @@ const DIALECT: [&str; 13] = [
     "one body shows",
     "taken apart",
 ];
-
-fn root() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-}
-
-/// Pages in Markdown that a reader comes to; generated ones stand in folders of `docs/shown`.
-fn pages() -> Vec<PathBuf> {
-    let named = [
-        "README.md",
-        "CONTRIBUTING.md",
-        "CHANGELOG.md",
-        "tests/README.md",
-        "benches/README.md",
-        "docs/shown/claims.md",
-    ];
-    let folder = |name: &str| fs::read_dir(root().join(name)).unwrap().map(|entry| entry.unwrap().path());
-    let docs = folder("docs").filter(|path| path.extension().is_some_and(|extension| extension == "md"));
-    let shown = folder("docs/shown").map(|path| path.join("README.md")).filter(|path| path.is_file());
-    named.iter().map(|name| root().join(name)).chain(docs).chain(shown).collect()
-}
 
 /// The sentences of the paragraphs and lists of a page; what is in code is one word, and tables, headings and pictures do not count.
 fn sentences(markdown: &str) -> Vec<String> {
@@ -119,7 +102,7 @@ fn sentences_are_short_and_in_the_fields_words() {
 
 #[test]
 fn the_readme_is_short() {
-    let words = words(&fs::read_to_string(root().join("README.md")).unwrap());
+    let words = words(&read("README.md"));
     assert!(words <= README, "the README has {words} words");
 }
 

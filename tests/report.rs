@@ -1,34 +1,15 @@
 //! The report as a reader sees it, on a phone and on a desk: opened in headless Chromium, every figure is
-//! there and nothing overflows. Skipped with a message where there is no Chromium.
+//! there and nothing overflows. Skipped without Chromium.
 
-use std::collections::HashMap;
-use std::fs;
 use std::path::Path;
-use std::process::Command;
 
 use serde::Deserialize;
 
-#[path = "support/browser.rs"]
-mod browser;
+mod support;
 
-use browser::{inaccessible, quoted, seen};
-
-/// A body of 5 parts of 24 sensors that moves for 1500 s, at the dimensions whose maps are drawn.
-const SMALL: &str = "
-[skin]
-around = 8
-along = 3
-[physics]
-duration = 1500.0
-[schema]
-chains = 6
-sweeps = 60
-[experiment]
-dimensions = [2, 3, 14]
-coordinations = [0.4, 0.9, 1.0]
-simulations = 2
-seed = 11
-";
+use support::browser::{inaccessible, quoted, seen};
+use support::folder::Folder;
+use support::small::small;
 
 /// Opens the report in a frame of each width and says what it sees, as JSON in the element `seen`.
 const HARNESS: &str = r#"<!doctype html><meta charset="utf-8"><body><pre id="seen"></pre><script>
@@ -118,13 +99,6 @@ fn look(report: &str, folder: &Path) -> Option<Vec<Seen>> {
     Some(serde_json::from_str(&seen).unwrap_or_else(|error| panic!("{error}: {seen}")))
 }
 
-/// Claims of an experiment that have an accepted range.
-fn testable(claims: &Path) -> usize {
-    let mut reader = csv::Reader::from_path(claims).unwrap();
-    let rows = reader.deserialize().map(Result::unwrap);
-    rows.filter(|row: &HashMap<String, String>| !row["accepted_low"].is_empty()).count()
-}
-
 fn check_ranges(context: &str, ranges: &[Range], testable: usize) {
     assert_eq!(ranges.len(), testable, "{context}: a drawing for each claim that can be tested");
     for Range { words, title, width, bands, cut } in ranges {
@@ -137,8 +111,13 @@ fn check_ranges(context: &str, ranges: &[Range], testable: usize) {
 
 #[test]
 fn the_report_shows_every_figure_and_nothing_overflows() {
-    let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("small.toml"), SMALL).unwrap();
+    let folder = Folder::new();
+    // At the dimensions whose maps are drawn.
+    let drawn = "experiment.dimensions = [2, 3, 14]\nexperiment.coordinations = [0.4, 0.9, 1.0]";
+    folder.write(
+        "small.toml",
+        small(&format!("{drawn}\nexperiment.simulations = 2\nphysics.duration = 1500.0")),
+    );
     for (experiment, figures) in [
         (
             "exp1",
@@ -159,17 +138,13 @@ fn the_report_shows_every_figure_and_nothing_overflows() {
         ),
         ("exp2", &["fig11a-ari", "fig11b-tree"]),
     ] {
-        let run = Command::new(env!("CARGO_BIN_EXE_bodyschema"))
-            .current_dir(folder.path())
-            .args(["reproduce", experiment, "--settings", "small.toml", "--out", experiment])
-            .output()
-            .unwrap();
-        assert!(run.status.code().unwrap() <= 1, "{run:?}");
-        let report = fs::read_to_string(folder.path().join(experiment).join("report.html")).unwrap();
+        folder.reproduce(&format!("{experiment} --settings small.toml --out {experiment}"));
+        let report = folder.text(format!("{experiment}/report.html"));
         for forbidden in ["src=\"http", "href=\"http", "@import", "url("] {
             assert!(!report.contains(forbidden), "the report needs the network: {forbidden}");
         }
-        let testable = testable(&folder.path().join(experiment).join("claims.csv"));
+        let claims = folder.rows(format!("{experiment}/claims.csv"));
+        let testable = claims.iter().filter(|row| !row["accepted_low"].is_empty()).count();
         assert!(testable >= 7, "{experiment}: {testable} claims can be tested");
         let Some(seen) = look(&report, folder.path()) else { return };
         for Seen { width, scroll, rows, settings, beyond, ranges, figures: found } in seen {

@@ -2,94 +2,48 @@
 
 use std::collections::BTreeMap;
 use std::fs;
-use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
+use std::sync::LazyLock;
 use std::time::Duration;
 
 use bodyschema::numerics::rng::stream;
 use rand::RngExt;
 
-/// Both experiments in a second or two.
-const SMALL: &str = "
-[skin]
-around = 8
-along = 3
-[physics]
-duration = 1000.0
-[schema]
-chains = 6
-sweeps = 100
-[experiment]
-dimensions = [2, 4]
-coordinations = [0.5, 0.9]
-dimension = 4
-simulations = 2
-seed = 5
+mod support;
+
+use support::folder::Folder;
+use support::said::Said;
+use support::small::small;
+
+/// Both experiments in a second or two, in more parts.
+const PARTS: &str = "
+schema.sweeps = 100
+experiment.coordinations = [0.5, 0.9]
+experiment.dimension = 4
+experiment.simulations = 2
 ";
 
-struct Place {
-    folder: tempfile::TempDir,
+/// The files of experiment 1 that is left alone.
+static WHOLE: LazyLock<BTreeMap<String, Vec<u8>>> = LazyLock::new(|| {
+    let folder = folder_with_settings();
+    assert_eq!(finish(&folder, "exp1", "whole"), "");
+    folder.files("whole")
+});
+
+fn folder_with_settings() -> Folder {
+    let folder = Folder::new();
+    folder.write("small.toml", small(PARTS));
+    folder
 }
 
-impl Place {
-    fn new() -> Self {
-        Self::of(SMALL)
-    }
-
-    fn of(settings: &str) -> Self {
-        let folder = tempfile::tempdir().unwrap();
-        fs::write(folder.path().join("small.toml"), settings).unwrap();
-        Self { folder }
-    }
-
-    fn out(&self, name: &str) -> PathBuf {
-        self.folder.path().join(name)
-    }
-
-    fn start(&self, experiment: &str, out: &str, settings: &str) -> Child {
-        Command::new(env!("CARGO_BIN_EXE_bodyschema"))
-            .current_dir(self.folder.path())
-            .args(["reproduce", experiment, "--settings", settings, "--out", out])
-            .stdout(Stdio::null())
-            .stderr(Stdio::piped())
-            .spawn()
-            .unwrap()
-    }
-
-    /// Runs to the end, and returns what it said of trouble.
-    fn finish(&self, experiment: &str, out: &str) -> String {
-        let output = self.start(experiment, out, "small.toml").wait_with_output().unwrap();
-        assert!(output.status.code().unwrap() <= 1, "{output:?}");
-        String::from_utf8(output.stderr).unwrap()
-    }
+fn start(folder: &Folder, arguments: &str) -> Child {
+    let mut command = folder.command(&format!("reproduce {arguments}"));
+    command.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap()
 }
 
-/// All files of a run but those that tell runs apart.
-fn files(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
-    let mut files = BTreeMap::new();
-    let mut folders = vec![folder.to_owned()];
-    while let Some(next) = folders.pop() {
-        for entry in fs::read_dir(next).unwrap() {
-            let path = entry.unwrap().path();
-            if path.is_dir() {
-                folders.push(path);
-            } else if !["run.json", "ro-crate-metadata.json"]
-                .contains(&path.file_name().unwrap().to_str().unwrap())
-            {
-                files.insert(path.strip_prefix(folder).unwrap().to_owned(), fs::read(&path).unwrap());
-            }
-        }
-    }
-    files
-}
-
-fn same(found: &Path, expected: &BTreeMap<PathBuf, Vec<u8>>, what: &str) {
-    let found = files(found);
-    let names = |files: &BTreeMap<PathBuf, Vec<u8>>| files.keys().cloned().collect::<Vec<_>>();
-    assert_eq!(names(&found), names(expected), "{what}");
-    for (name, bytes) in expected {
-        assert!(found[name] == *bytes, "{what}: {} differs", name.display());
-    }
+/// Runs to the end, and returns what it said of trouble.
+fn finish(folder: &Folder, experiment: &str, out: &str) -> String {
+    folder.reproduce(&format!("{experiment} --settings small.toml --out {out}")).err
 }
 
 fn ended(child: &mut Child, within: Duration) -> Option<ExitStatus> {
@@ -105,23 +59,23 @@ fn ended(child: &mut Child, within: Duration) -> Option<ExitStatus> {
 
 #[test]
 fn a_run_killed_at_any_moment_ends_with_the_same_files() {
-    let place = Place::new();
+    let folder = folder_with_settings();
     let mut rng = stream(1, 1, "kills", 0);
     // `BODYSCHEMA_ROUNDS=40 cargo test --test resume -- --nocapture` kills for some minutes.
     let rounds: usize = std::env::var("BODYSCHEMA_ROUNDS").map_or(2, |rounds| rounds.parse().unwrap());
     let mut all_kills = 0;
     for experiment in ["exp1", "exp2"] {
-        assert_eq!(place.finish(experiment, experiment), "");
-        let expected = files(&place.out(experiment));
+        assert_eq!(finish(&folder, experiment, experiment), "");
+        let expected = folder.files(experiment);
         assert!(
-            expected.keys().all(|name| !name.starts_with("checkpoints")),
+            expected.keys().all(|name| !name.starts_with("checkpoints/")),
             "they go when a run is finished"
         );
         for round in 0..rounds {
             let out = format!("{experiment}-{round}");
             let mut kills = 0;
             loop {
-                let mut child = place.start(experiment, &out, "small.toml");
+                let mut child = start(&folder, &format!("{experiment} --settings small.toml --out {out}"));
                 // Ever longer, so that even a slow machine finishes at last.
                 let longest = 400 << (kills / 3);
                 let moment = Duration::from_millis(rng.random_range(1..longest));
@@ -134,7 +88,8 @@ fn a_run_killed_at_any_moment_ends_with_the_same_files() {
                 kills += 1;
             }
             assert!(kills > 0, "at least one kill is well before the end");
-            same(&place.out(&out), &expected, &format!("{experiment} after {kills} kills"));
+            println!("{kills} kills");
+            folder.has_files(&out, &expected);
             all_kills += kills;
         }
     }
@@ -143,36 +98,26 @@ fn a_run_killed_at_any_moment_ends_with_the_same_files() {
 
 #[test]
 fn a_full_disk_is_an_error_and_the_run_goes_on_when_there_is_room() {
-    let place = Place::new();
-    place.finish("exp1", "whole");
+    let folder = folder_with_settings();
     // The shell's limit on the size of a file fails a write as a full disk does.
     for kilobytes in [0, 1, 4, 20, 60] {
         let program = env!("CARGO_BIN_EXE_bodyschema");
         let limited = format!(
             "trap '' XFSZ; ulimit -f {kilobytes}; exec {program} reproduce exp1 --settings small.toml --out full"
         );
-        let output = Command::new("bash")
-            .args(["-c", &limited])
-            .current_dir(place.folder.path())
-            .stdout(Stdio::null())
-            .output()
-            .unwrap();
-        let said = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(output.status.code(), Some(2), "{kilobytes} kB: {said}");
-        assert!(said.lines().last().unwrap().contains("cannot be written"), "{kilobytes} kB: {said}");
-        assert!(
-            files(&place.out("full")).keys().all(|name| name.extension().unwrap() != "partial"),
-            "{said}"
-        );
+        let said = Said::by(Command::new("bash").args(["-c", &limited]).current_dir(folder.path()));
+        assert_eq!(said.status, Some(2), "{kilobytes} kB: {said:?}");
+        assert!(said.err.lines().last().unwrap().contains("cannot be written"), "{kilobytes} kB: {said:?}");
+        assert!(folder.files("full").keys().all(|name| !name.ends_with(".partial")), "{said:?}");
     }
-    place.finish("exp1", "full");
-    same(&place.out("full"), &files(&place.out("whole")), "after a full disk");
+    finish(&folder, "exp1", "full");
+    folder.has_files("full", &WHOLE);
 }
 
 /// Starts experiment 1 and leaves it once it has this part.
-fn leave_after(place: &Place, out: &str, part: &str, signal: &str) -> ExitStatus {
-    let mut child = place.start("exp1", out, "small.toml");
-    let part = place.out(out).join("checkpoints").join(part);
+fn leave_after(folder: &Folder, out: &str, part: &str, signal: &str) -> ExitStatus {
+    let mut child = start(folder, &format!("exp1 --settings small.toml --out {out}"));
+    let part = folder.at(out).join("checkpoints").join(part);
     while !part.exists() {
         assert!(child.try_wait().unwrap().is_none(), "{} was there before the end", part.display());
         std::thread::sleep(Duration::from_millis(1));
@@ -184,70 +129,64 @@ fn leave_after(place: &Place, out: &str, part: &str, signal: &str) -> ExitStatus
 
 #[test]
 fn damaged_and_foreign_parts_are_done_again_with_a_line_that_says_so() {
-    let place = Place::new();
-    place.finish("exp1", "whole");
-    let expected = files(&place.out("whole"));
-    let parts = |out: &str| place.out(out).join("checkpoints/simulation-1");
-
-    leave_after(&place, "cut", "simulation-1/dpgmm-lj-2.json", "-KILL");
-    let path = parts("cut").join("dpgmm-2.json");
-    let bytes = fs::read(&path).unwrap();
-    fs::write(&path, &bytes[..bytes.len() / 2]).unwrap();
-    let said = place.finish("exp1", "cut");
+    let folder = folder_with_settings();
+    leave_after(&folder, "cut", "simulation-1/dpgmm-lj-2.json", "-KILL");
+    let part = "cut/checkpoints/simulation-1/dpgmm-2.json";
+    let bytes = folder.bytes(part);
+    folder.write(part, &bytes[..bytes.len() / 2]);
+    let said = finish(&folder, "exp1", "cut");
     assert!(said.contains("dpgmm-2.json: is not a checkpoint; this part is run again"), "{said}");
     assert!(said.contains("continuing from what an earlier run finished"), "{said}");
-    same(&place.out("cut"), &expected, "a part cut short");
-
-    leave_after(&place, "swapped", "simulation-1/dpgmm-lj-2.json", "-KILL");
-    let map = place.out("swapped").join("simulation-1/body-map.npy");
-    fs::write(&map, fs::read(place.out("whole").join("simulation-2/body-map.npy")).unwrap()).unwrap();
-    let said = place.finish("exp1", "swapped");
-    assert!(said.contains("body-map.npy: has changed or is missing; it is computed again"), "{said}");
-    same(&place.out("swapped"), &expected, "a body map of another simulation");
-
-    leave_after(&place, "other", "simulation-1/dpgmm-lj-2.json", "-KILL");
-    fs::write(place.out("other.toml"), SMALL.replace("seed = 5", "seed = 6")).unwrap();
-    let output = place.start("exp1", "other", "other.toml").wait_with_output().unwrap();
-    let said = String::from_utf8(output.stderr).unwrap();
-    assert!(said.contains("other settings or of another version of the program are ignored"), "{said}");
-    let whole = place.start("exp1", "whole-other", "other.toml").wait_with_output().unwrap();
-    assert!(whole.status.code().unwrap() <= 1);
-    same(&place.out("other"), &files(&place.out("whole-other")), "another seed");
+    folder.has_files("cut", &WHOLE);
     // A run that is finished is made anew.
-    assert_eq!(place.finish("exp1", "whole"), "");
-    same(&place.out("whole"), &expected, "twice");
+    assert_eq!(finish(&folder, "exp1", "cut"), "");
+    folder.has_files("cut", &WHOLE);
+
+    // A body map of another simulation.
+    leave_after(&folder, "swapped", "simulation-1/dpgmm-lj-2.json", "-KILL");
+    folder.write("swapped/simulation-1/body-map.npy", &WHOLE["simulation-2/body-map.npy"]);
+    let said = finish(&folder, "exp1", "swapped");
+    assert!(said.contains("body-map.npy: has changed or is missing; it is computed again"), "{said}");
+    folder.has_files("swapped", &WHOLE);
+
+    leave_after(&folder, "other", "simulation-1/dpgmm-lj-2.json", "-KILL");
+    folder.write("other.toml", small(&format!("{PARTS}experiment.seed = 6")));
+    let said = folder.reproduce("exp1 --settings other.toml --out other").err;
+    assert!(said.contains("other settings or of another version of the program are ignored"), "{said}");
+    folder.reproduce("exp1 --settings other.toml --out whole-other");
+    folder.has_files("other", &folder.files("whole-other"));
 }
 
 #[test]
 fn a_map_for_each_dimension_is_taken_up_again() {
-    let place = Place::of(&format!("{SMALL}[map]\nmethod = \"nonmetric\""));
-    assert_eq!(place.finish("exp1", "whole"), "");
-    let expected = files(&place.out("whole"));
-    let map = |d: usize| PathBuf::from(format!("simulation-1/body-map-{d}.npy"));
-    assert!(expected.contains_key(&map(2)) && expected.contains_key(&map(4)), "{:?}", expected.keys());
-    assert!(!expected.contains_key(Path::new("simulation-1/body-map.npy")));
-    let manifest: serde_json::Value = serde_json::from_slice(&expected[Path::new("manifest.json")]).unwrap();
+    let folder = Folder::new();
+    folder.write("small.toml", small(&format!("{PARTS}map.method = \"nonmetric\"")));
+    assert_eq!(finish(&folder, "exp1", "whole"), "");
+    let expected = folder.files("whole");
+    for (map, is_there) in [("body-map-2", true), ("body-map-4", true), ("body-map", false)] {
+        assert_eq!(expected.contains_key(&format!("simulation-1/{map}.npy")), is_there, "{map}");
+    }
+    let manifest: serde_json::Value = serde_json::from_slice(&expected["manifest.json"]).unwrap();
     let improvements = manifest["bodies"][0]["facts"]["improvements"].as_array().unwrap();
     assert_eq!(improvements.len(), 2);
     assert!(improvements.iter().all(|d| d["stress"].as_f64().unwrap() < d["start"].as_f64().unwrap()));
 
-    leave_after(&place, "left", "simulation-1/dpgmm-2.json", "-KILL");
-    let said = place.finish("exp1", "left");
+    leave_after(&folder, "left", "simulation-1/dpgmm-2.json", "-KILL");
+    let said = finish(&folder, "exp1", "left");
     assert!(said.contains("continuing from") && !said.contains("again"), "{said}");
-    same(&place.out("left"), &expected, "maps taken up");
-    leave_after(&place, "lost", "simulation-1/dpgmm-2.json", "-KILL");
-    fs::remove_file(place.out("lost").join(map(2))).unwrap();
-    let said = place.finish("exp1", "lost");
+    folder.has_files("left", &expected);
+    leave_after(&folder, "lost", "simulation-1/dpgmm-2.json", "-KILL");
+    fs::remove_file(folder.at("lost/simulation-1/body-map-2.npy")).unwrap();
+    let said = finish(&folder, "exp1", "lost");
     assert!(said.contains("body-map-2.npy: has changed or is missing; it is computed again"), "{said}");
-    same(&place.out("lost"), &expected, "a map that is missing");
+    folder.has_files("lost", &expected);
 }
 
 #[test]
 fn ctrl_c_leaves_with_130_and_the_run_goes_on() {
-    let place = Place::new();
-    place.finish("exp1", "whole");
-    let status = leave_after(&place, "left", "simulation-1/dpgmm-2.json", "-INT");
+    let folder = folder_with_settings();
+    let status = leave_after(&folder, "left", "simulation-1/dpgmm-2.json", "-INT");
     assert_eq!(status.code(), Some(130));
-    place.finish("exp1", "left");
-    same(&place.out("left"), &files(&place.out("whole")), "after Ctrl-C");
+    finish(&folder, "exp1", "left");
+    folder.has_files("left", &WHOLE);
 }

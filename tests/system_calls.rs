@@ -1,47 +1,40 @@
 //! What the program asks the operating system for: it writes under `--out` alone, and opens no socket. Watched by
-//! strace; skipped with a message where that is missing or may not watch.
+//! strace; skipped where that is missing or may not watch.
 
-use std::fs;
-use std::io::Write;
 use std::path::Path;
 use std::process::Command;
 
-const SMALL: &str = "
-[skin]
-around = 4
-along = 3
-[physics]
-duration = 500.0
-[schema]
-chains = 2
-sweeps = 10
-[experiment]
-dimensions = [2, 3]
-coordinations = [0.4, 0.9]
-dimension = 3
-simulations = 1
+mod support;
+
+use support::folder::Folder;
+use support::said::Said;
+use support::small::small;
+use support::tools::skipped;
+
+/// Less still, for strace is slow.
+const TINY: &str = "
+skin.around = 4
+physics.duration = 500.0
+schema = { chains = 2, sweeps = 10 }
+experiment = { dimensions = [2, 3], coordinations = [0.4, 0.9], dimension = 3 }
 ";
 
 /// The system calls of `bodyschema ARGUMENTS`, a line each; none without strace.
-fn watch(folder: &Path, arguments: &str) -> Option<Vec<String>> {
-    let calls = folder.join("calls");
-    let strace = |program: &[&str]| {
+fn watch(folder: &Folder, arguments: &str) -> Option<Vec<String>> {
+    let strace = |program: &Command| {
         let mut command = Command::new("strace");
-        let options = "-f -y -s 4096 -e trace=%file,%network,fchmod,fchown,ftruncate -o";
-        command.current_dir(folder).args(options.split(' ')).arg(&calls).args(program).output()
+        let options = "-f -y -s 4096 -e trace=%file,%network,fchmod,fchown,ftruncate -o calls";
+        command.current_dir(folder.path()).args(options.split(' '));
+        command.arg(program.get_program()).args(program.get_args()).output()
     };
-    if !strace(&["true"]).is_ok_and(|output| output.status.success()) {
-        // Past the harness, which shows what a test prints only if it fails.
-        let _ = writeln!(std::io::stderr(), "system calls: skipped, for strace is missing or may not watch");
+    if !strace(&Command::new("true")).is_ok_and(|output| output.status.success()) {
+        skipped("strace is missing or may not watch");
         return None;
     }
-    let program: Vec<&str> =
-        [env!("CARGO_BIN_EXE_bodyschema")].into_iter().chain(arguments.split_whitespace()).collect();
-    let output = strace(&program).unwrap();
-    assert!(output.status.code().unwrap() <= 1, "{}", String::from_utf8_lossy(&output.stderr));
-    let text = fs::read(&calls).unwrap();
+    let said = Said::from(strace(&folder.command(arguments)).unwrap());
+    assert!(said.status.unwrap() <= 1, "{said:?}");
     // Without the number of the process that each line begins with.
-    let lines = String::from_utf8_lossy(&text).into_owned();
+    let lines = String::from_utf8_lossy(&folder.bytes("calls")).into_owned();
     Some(lines.lines().filter_map(|line| Some(line.split_once(' ')?.1.trim_start().to_owned())).collect())
 }
 
@@ -83,16 +76,16 @@ fn trespasses(calls: &[String], out: &Path) -> Vec<String> {
 
 #[test]
 fn an_experiment_writes_under_out_alone_and_opens_no_socket() {
-    let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("small.toml"), SMALL).unwrap();
+    let folder = Folder::new();
+    folder.write("small.toml", small(TINY));
     for experiment in ["exp1", "exp2"] {
-        let out = folder.path().join(experiment);
+        let out = folder.at(experiment);
         let arguments = format!("reproduce {experiment} --settings small.toml --out {}", out.display());
-        let Some(calls) = watch(folder.path(), &arguments) else { return };
+        let Some(calls) = watch(&folder, &arguments) else { return };
         assert!(calls.len() > 100, "{calls:?}");
         assert_eq!(trespasses(&calls, &out), [""; 0]);
         // The twin: the same calls, had another folder been given.
-        let elsewhere = trespasses(&calls, &folder.path().join("elsewhere"));
+        let elsewhere = trespasses(&calls, &folder.at("elsewhere"));
         assert!(elsewhere.iter().any(|call| call.contains("report.html")), "{elsewhere:?}");
         assert!(!trespasses(&["socket(AF_INET, SOCK_STREAM, 0) = 3".to_owned()], &out).is_empty());
     }

@@ -1,69 +1,47 @@
 //! `bodyschema verify`: what it finds in results that are whole, damaged, of another run or of another machine.
 
 use std::fs;
-use std::path::Path;
-use std::process::{Command, Output};
 
 use bodyschema::files::{npy, sha256};
 
-/// Experiment 1 in a second or two.
-const SMALL: &str = "
-[skin]
-around = 8
-along = 3
-[physics]
-duration = 1000.0
-[schema]
-chains = 6
-sweeps = 60
-[experiment]
-dimensions = [2, 4]
-coordinations = [0.9]
-simulations = 1
-seed = 5
-";
+mod support;
 
-fn bodyschema(arguments: &str) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_bodyschema")).args(arguments.split(' ')).output().unwrap()
+use support::folder::Folder;
+use support::repository::repository;
+use support::said::Said;
+use support::small::small;
+
+/// All that is printed, with this exit status.
+#[track_caller]
+fn verify(folder: &Folder, arguments: &str, status: i32) -> String {
+    let said = folder.run(&format!("verify {arguments}"));
+    assert_eq!(said.status, Some(status), "{said:?}");
+    said.out + &said.err
 }
 
-/// Exit status and all that is printed.
-fn verify(arguments: &str) -> (i32, String) {
-    let output = bodyschema(&format!("verify {arguments}"));
-    let printed = [output.stdout, output.stderr].concat();
-    (output.status.code().unwrap(), String::from_utf8(printed).unwrap())
-}
-
-/// A small experiment in a folder of its own.
-fn experiment(folder: &Path, name: &str, settings: &str) -> String {
-    let (file, out) = (folder.join(format!("{name}.toml")), folder.join(name));
-    fs::write(&file, settings).unwrap();
-    let arguments = format!("reproduce exp1 --settings {} --out {}", file.display(), out.display());
-    assert!(bodyschema(&arguments).status.code().unwrap() <= 1);
-    out.display().to_string()
+/// A small experiment.
+fn experiment(folder: &Folder, out: &str, over: &str) {
+    folder.write(format!("{out}.toml"), small(over));
+    folder.reproduce(&format!("exp1 --settings {out}.toml --out {out}"));
 }
 
 #[test]
 fn a_finished_run_is_compared_with_its_manifest() {
-    let folder = tempfile::tempdir().unwrap();
-    let run = experiment(folder.path(), "run", SMALL);
-    let (status, printed) = verify(&run);
-    assert_eq!(status, 0, "{printed}");
+    let folder = Folder::new();
+    experiment(&folder, "run", "");
+    let printed = verify(&folder, "run", 0);
     assert!(printed.ends_with("0 within tolerance, 0 not\n") && printed.lines().count() == 1, "{printed}");
 
-    let samples = Path::new(&run).join("samples.csv");
-    let whole = fs::read_to_string(&samples).unwrap();
-    fs::write(&samples, whole.replacen("1,", "2,", 1)).unwrap();
-    fs::remove_file(Path::new(&run).join("simulation-1/body-map.npy")).unwrap();
-    let (status, printed) = verify(&run);
-    assert_eq!(status, 1, "{printed}");
+    folder.write("run/samples.csv", folder.text("run/samples.csv").replacen("1,", "2,", 1));
+    fs::remove_file(folder.at("run/simulation-1/body-map.npy")).unwrap();
+    let printed = verify(&folder, "run", 1);
     assert!(printed.contains("differs           samples.csv: its SHA-256 is not"), "{printed}");
     assert!(printed.contains("missing           simulation-1/body-map.npy\n"), "{printed}");
     assert!(printed.ends_with("0 within tolerance, 2 not\n"), "{printed}");
 
-    let described = Path::new(&run).join("ro-crate-metadata.json");
-    let text = fs::read_to_string(&described).unwrap();
-    let hash = sha256(&Path::new(&run).join("claims.csv")).unwrap();
+    let described = "run/ro-crate-metadata.json";
+    let text = folder.text(described);
+    let hash = sha256(&folder.at("run/claims.csv")).unwrap();
     let other = hash.chars().rev().collect::<String>();
     for (content, status, expected) in [
         (
@@ -83,71 +61,60 @@ fn a_finished_run_is_compared_with_its_manifest() {
         ),
         (text[..text.len() / 2].to_owned(), 2, "is not a crate of results"),
     ] {
-        fs::write(&described, content).unwrap();
-        let (found, printed) = verify(&run);
-        assert!(found == status && printed.contains(expected), "{printed}");
+        folder.write(described, content);
+        let printed = verify(&folder, "run", status);
+        assert!(printed.contains(expected), "{printed}");
         assert_eq!(printed.lines().filter(|line| line.contains("ro-crate")).count(), 1, "{printed}");
     }
     // Results of programs before there were crates.
-    fs::remove_file(&described).unwrap();
-    assert!(verify(&run).1.ends_with("0 within tolerance, 2 not\n"));
+    fs::remove_file(folder.at(described)).unwrap();
+    assert!(verify(&folder, "run", 1).ends_with("0 within tolerance, 2 not\n"));
 
-    let manifest = Path::new(&run).join("manifest.json");
-    let text = fs::read_to_string(&manifest).unwrap();
+    let manifest = "run/manifest.json";
+    let text = folder.text(manifest);
     for (content, expected) in [
         (text.replace("\"samples.csv\"", "\"../samples.csv\""), "which is not a file within its folder"),
         (text.replace("\"samples.csv\"", "\"/etc/hostname\""), "which is not a file within its folder"),
         (text[..text.len() / 2].to_owned(), "is not a manifest"),
         ("[]".to_owned(), "is not a manifest"),
     ] {
-        fs::write(&manifest, content).unwrap();
-        let (status, printed) = verify(&run);
-        assert_eq!(status, 2, "{printed}");
-        assert!(printed.contains(expected) && printed.lines().count() == 1, "{printed}");
+        folder.write(manifest, content);
+        folder.refuse("verify run", expected);
     }
-    fs::remove_file(&manifest).unwrap();
-    let (status, printed) = verify(&run);
-    assert!(status == 2 && printed.contains("a run writes its manifest when it is finished"), "{printed}");
+    fs::remove_file(folder.at(manifest)).unwrap();
+    folder.refuse("verify run", "a run writes its manifest when it is finished");
 }
 
 #[test]
 fn two_runs_are_compared_number_by_number() {
-    let folder = tempfile::tempdir().unwrap();
-    let run = experiment(folder.path(), "run", SMALL);
-    let again = experiment(folder.path(), "again", SMALL);
-    let (status, printed) = verify(&format!("{again} --against {run}"));
-    assert_eq!(status, 0, "{printed}");
+    let folder = Folder::new();
+    experiment(&folder, "run", "");
+    experiment(&folder, "again", "");
+    let printed = verify(&folder, "again --against run", 0);
     assert_eq!(printed.lines().count(), 2, "{printed}");
 
     // Another class of CPU: last digits.
-    fs::remove_file(Path::new(&again).join("manifest.json")).unwrap();
-    let path = Path::new(&again).join("simulation-1/body-map.npy");
+    fs::remove_file(folder.at("again/manifest.json")).unwrap();
+    let path = folder.at("again/simulation-1/body-map.npy");
     let map = npy::read_body_map(&path).unwrap();
-    let changed = |change: f64| {
+    let changed = |change: f64, status: i32| {
         let mut map = map.clone();
         map.coordinates[7] += change;
         npy::write_body_map(&path, &map).unwrap();
-        verify(&format!("{again} --against {run}"))
+        verify(&folder, "again --against run", status)
     };
-    let (status, printed) = changed(1e-9);
-    assert_eq!(status, 0, "{printed}");
+    let printed = changed(1e-9, 0);
     assert!(printed.contains(
         "within tolerance  simulation-1/body-map.npy: largest difference 1.0e-9, in row 1, column 3"
     ));
-    let (status, printed) = changed(1e-3);
-    assert_eq!(status, 1, "{printed}");
+    let printed = changed(1e-3, 1);
     assert!(
         printed.contains("differs           simulation-1/body-map.npy: largest difference 1.0e-3"),
         "{printed}"
     );
 
-    let other = experiment(
-        folder.path(),
-        "other",
-        &SMALL.replace("seed = 5", "seed = 6\n[motion]\ncoordination = 0.5"),
-    );
-    let (status, printed) = verify(&format!("{other} --against {run}"));
-    assert_eq!(status, 1, "{printed}");
+    experiment(&folder, "other", "experiment.seed = 6\nmotion.coordination = 0.5");
+    let printed = verify(&folder, "other --against run", 1);
     assert!(printed.contains("seed is 6, reference 5"), "{printed}");
     assert!(printed.contains("settings.motion.coordination is 0.5, reference 0.9"), "{printed}");
     assert!(printed.contains("differs           simulation-1/distance.npy"), "{printed}");
@@ -162,83 +129,64 @@ fn draws(eligible: usize, right: usize) -> String {
 
 #[test]
 fn other_draws_are_compared_by_their_rates() {
-    let folder = tempfile::tempdir().unwrap();
-    let (own, reference) = (folder.path().join("own"), folder.path().join("reference"));
-    for folder in [&own, &reference] {
-        fs::create_dir(folder).unwrap();
-    }
-    fs::write(reference.join("samples.csv"), draws(80, 60)).unwrap();
-    let compare = |table: String| {
-        fs::write(own.join("samples.csv"), table).unwrap();
-        verify(&format!("{} --against {}", own.display(), reference.display()))
+    let folder = Folder::new();
+    folder.write("reference/samples.csv", draws(80, 60));
+    let compare = |table: String, status: i32| {
+        folder.write("own/samples.csv", table);
+        verify(&folder, "own --against reference", status)
     };
-    assert_eq!(compare(draws(80, 60)).0, 0);
-    let (status, printed) = compare(draws(75, 62));
-    assert_eq!(status, 0, "{printed}");
-    assert!(printed.contains("same rates        samples.csv: line 2, log_posterior"), "{printed}");
-    let (status, printed) = compare(draws(50, 45));
-    assert_eq!(status, 1, "{printed}");
-    assert!(
-        printed.contains("eligible 50 of 100, reference 80 of 100: 4.4 standard errors apart"),
-        "{printed}"
-    );
-    let (status, printed) = compare(draws(80, 30));
-    assert_eq!(status, 1, "{printed}");
-    assert!(
-        printed.contains("correct trees 30 of 80, reference 60 of 80: 4.8 standard errors apart"),
-        "{printed}"
-    );
-    let (status, printed) = compare(draws(80, 60).replace("chain,parts", "chain,pieces"));
-    assert_eq!(status, 1, "{printed}");
-    assert!(printed.contains("columns chain,pieces"), "{printed}");
-    let (status, printed) = compare(draws(80, 60).replace("chain,parts", "\"ch\nain\",parts"));
-    assert!(status == 1 && printed.contains("columns ch ain,parts"), "{printed}");
-    let (status, printed) = compare(String::new());
-    assert!(status == 2 && printed.contains("samples.csv: is empty"), "{printed}");
-
-    fs::remove_file(reference.join("samples.csv")).unwrap();
-    let (status, printed) = compare(draws(80, 60));
-    assert!(status == 2 && printed.contains("has no .csv or .npy file"), "{printed}");
+    compare(draws(80, 60), 0);
+    for (table, status, expected) in [
+        (draws(75, 62), 0, "same rates        samples.csv: line 2, log_posterior"),
+        (draws(50, 45), 1, "eligible 50 of 100, reference 80 of 100: 4.4 standard errors apart"),
+        (draws(80, 30), 1, "correct trees 30 of 80, reference 60 of 80: 4.8 standard errors apart"),
+        (draws(80, 60).replace("chain,parts", "chain,pieces"), 1, "columns chain,pieces"),
+        (draws(80, 60).replace("chain,parts", "\"ch\nain\",parts"), 1, "columns ch ain,parts"),
+        (String::new(), 2, "samples.csv: is empty"),
+    ] {
+        let printed = compare(table, status);
+        assert!(printed.contains(expected), "{printed}");
+    }
+    fs::remove_file(folder.at("reference/samples.csv")).unwrap();
+    let printed = compare(draws(80, 60), 2);
+    assert!(printed.contains("has no .csv or .npy file"), "{printed}");
 }
 
-/// The body maps of the full experiments, which are committed with the draws that were made of them. The second
-/// is drawn from by the C library's functions for older processors, which round some results otherwise.
+/// The C library's functions of this processor, and those for older ones, which round some results otherwise.
+const PROCESSORS: [&str; 2] = ["", "glibc.cpu.hwcaps=-AVX2,-FMA"];
+
+fn succeed_on(processor: &str, folder: &Folder, arguments: &str) {
+    let said = Said::by(folder.command(arguments).env("GLIBC_TUNABLES", processor));
+    assert_eq!(said.status, Some(0), "{said:?}");
+}
+
+/// The body maps of the full experiments, which are committed with the draws that were made of them.
 #[test]
 fn the_reference_body_maps_give_the_reference_draws() {
-    let folder = tempfile::tempdir().unwrap();
-    for (experiment, processor) in [("exp1", ""), ("exp2", "glibc.cpu.hwcaps=-AVX2,-FMA")] {
-        let reference = format!("{}/reproduce/reference/{experiment}", env!("CARGO_MANIFEST_DIR"));
-        let out = folder.path().join(experiment).display().to_string();
-        let arguments = format!(
-            "infer {reference}/body-map.npy --labels {reference}/labels.csv --tree {reference}/tree.csv --out {out} \
-             --settings {}/reproduce/equations.toml",
-            env!("CARGO_MANIFEST_DIR")
-        );
-        let mut command = Command::new(env!("CARGO_BIN_EXE_bodyschema"));
-        let inferred = command.args(arguments.split(' ')).env("GLIBC_TUNABLES", processor).output().unwrap();
-        assert!(inferred.status.success(), "{inferred:?}");
-        let (status, printed) = verify(&format!("{out} --against {reference}/schema"));
-        assert_eq!(status, 0, "{printed}");
+    let folder = Folder::new();
+    let equations = repository("reproduce/equations.toml").display().to_string();
+    for (experiment, processor) in ["exp1", "exp2"].into_iter().zip(PROCESSORS) {
+        let reference = repository("reproduce/reference").join(experiment).display().to_string();
+        let truth = format!("--labels {reference}/labels.csv --tree {reference}/tree.csv");
+        let infer =
+            format!("infer {reference}/body-map.npy {truth} --settings {equations} --out {experiment}");
+        succeed_on(processor, &folder, &infer);
+        verify(&folder, &format!("{experiment} --against {reference}/schema"), 0);
     }
 }
 
-/// A movement that is too short for chaos, simulated by the C library's functions for newer and for older processors.
+/// A movement that is too short for chaos.
 #[test]
 fn the_reference_movement_is_repeated() {
-    let folder = tempfile::tempdir().unwrap();
-    let reference = format!("{}/reproduce/reference/movement", env!("CARGO_MANIFEST_DIR"));
-    let simulated = |name: &str, seed: u64, processor: &str| {
-        let out = folder.path().join(name).display().to_string();
-        let arguments = format!("simulate --settings {reference}/settings.toml --seed {seed} --out {out}");
-        let mut command = Command::new(env!("CARGO_BIN_EXE_bodyschema"));
-        let output = command.args(arguments.split(' ')).env("GLIBC_TUNABLES", processor).output().unwrap();
-        assert!(output.status.success(), "{output:?}");
-        verify(&format!("{out} --against {reference}"))
+    let folder = Folder::new();
+    let reference = repository("reproduce/reference/movement").display().to_string();
+    let simulated = |seed: u64, processor: &str, status: i32| {
+        let simulate = format!("simulate --settings {reference}/settings.toml --seed {seed} --out moved");
+        succeed_on(processor, &folder, &simulate);
+        verify(&folder, &format!("moved --against {reference}"), status);
     };
-    for (name, processor) in [("new", ""), ("old", "glibc.cpu.hwcaps=-AVX2,-FMA")] {
-        let (status, printed) = simulated(name, 3141, processor);
-        assert_eq!(status, 0, "{printed}");
+    for processor in PROCESSORS {
+        simulated(3141, processor, 0);
     }
-    let (status, printed) = simulated("other", 3142, "");
-    assert_eq!(status, 1, "{printed}");
+    simulated(3142, "", 1);
 }

@@ -1,25 +1,19 @@
-//! The page of `bodyschema view` as a reader sees it, in headless Chromium with WebGL in software. Skipped with a message where
-//! there is no Chromium.
+//! The page of `bodyschema view` as a reader sees it, in headless Chromium with WebGL in software. Skipped without Chromium.
 
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
-use std::process::{Command, Output};
 
 use serde::Deserialize;
+use serde_json::Value;
 
-#[path = "support/browser.rs"]
-mod browser;
+mod support;
 
-use browser::{inaccessible, quoted, seen};
+use support::browser::{inaccessible, quoted, seen};
+use support::folder::Folder;
 
 /// The paper's body of 840 sensors for a minute, in which joints move eleven times out of twelve.
-const MINUTE: &str = "
-[physics]
-duration = 60.0
-[motion]
-coordination = 0.5
-";
+const MINUTE: &str = "physics.duration = 60.0\nmotion.coordination = 0.5";
 
 /// Opens the page in a frame of each width, works with it as a reader does, and says what it sees as JSON in `seen`.
 const HARNESS: &str = include_str!("support/viewer.html");
@@ -54,19 +48,6 @@ struct Seen {
     detail: [bool; 4],
 }
 
-fn bodyschema(folder: &Path, arguments: &str) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_bodyschema"))
-        .current_dir(folder)
-        .args(arguments.split_whitespace())
-        .output()
-        .expect("the program starts")
-}
-
-fn succeed(folder: &Path, arguments: &str) {
-    let output = bodyschema(folder, arguments);
-    assert!(output.status.success(), "{arguments}: {output:?}");
-}
-
 /// What Chromium shows of a page at the width of a phone and of a desk, after it was open for `motion` ms of virtual time; none
 /// without Chromium.
 fn look(page: &str, folder: &Path, motion: u32, options: &[&str]) -> Option<Vec<Seen>> {
@@ -79,28 +60,26 @@ fn look(page: &str, folder: &Path, motion: u32, options: &[&str]) -> Option<Vec<
 const WEBGL: [&str; 3] = ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
 
 /// A folder with a simulation, and with an estimate of it that has the true parts and edges of a support of 75 %.
-fn simulated() -> tempfile::TempDir {
-    let folder = tempfile::tempdir().unwrap();
-    let at = |name: &str| folder.path().join(name);
-    fs::write(at("minute.toml"), MINUTE).unwrap();
-    succeed(folder.path(), "simulate --settings minute.toml --out body");
-    fs::create_dir(at("found")).unwrap();
-    fs::copy(at("body/labels.csv"), at("found/parts.csv")).unwrap();
-    let tree = fs::read_to_string(at("body/tree.csv")).unwrap();
-    let edges = tree.lines().skip(1).map(|edge| format!("{edge},0.75\n"));
-    fs::write(at("found/tree.csv"), format!("child,parent,support\n{}", edges.collect::<String>())).unwrap();
+fn simulated() -> Folder {
+    let folder = Folder::new();
+    folder.write("minute.toml", MINUTE);
+    folder.succeed("simulate --settings minute.toml --out body");
+    folder.write("found/parts.csv", folder.bytes("body/labels.csv"));
+    let edges: String =
+        folder.text("body/tree.csv").lines().skip(1).map(|edge| format!("{edge},0.75\n")).collect();
+    folder.write("found/tree.csv", format!("child,parent,support\n{edges}"));
     folder
 }
 
-fn page(folder: &Path, arguments: &str) -> String {
-    succeed(folder, &format!("view {arguments} --out page.html"));
-    let page = fs::read_to_string(folder.join("page.html")).unwrap();
+fn page(folder: &Folder, arguments: &str) -> String {
+    folder.succeed(&format!("view {arguments} --out page.html"));
+    let page = folder.text("page.html");
     assert!(page.len() < 3_000_000, "{arguments}: {} bytes", page.len());
     page
 }
 
 /// What a page shows.
-fn scenes(page: &str) -> serde_json::Value {
+fn scenes(page: &str) -> Value {
     let (_, rest) = page.split_once("<script class=\"data\" type=\"application/json\">").unwrap();
     serde_json::from_str(rest.split_once("</script>").unwrap().0).unwrap()
 }
@@ -128,7 +107,7 @@ fn check_access(page: &str, folder: &Path) {
 #[test]
 fn a_reader_sees_the_body_move_and_finds_a_sensor_again_on_the_map() {
     let folder = simulated();
-    let page = page(folder.path(), "body --estimate found");
+    let page = page(&folder, "body --estimate found");
     let Some(seen) = look(&page, folder.path(), 500, &WEBGL) else { return };
     for seen in &seen {
         let context = format!("at {} px", seen.width);
@@ -179,7 +158,7 @@ fn without_webgl_or_without_a_body_touch_over_time_is_shown() {
         ("body --estimate found", &["--disable-gpu", "--disable-3d-apis"][..]),
         ("found --tactile body/tactile.npy", &WEBGL[..]),
     ] {
-        let page = page(folder.path(), arguments);
+        let page = page(&folder, arguments);
         let Some(seen) = look(&page, folder.path(), 500, options) else { return };
         for seen in &seen {
             check(&format!("{arguments} at {} px", seen.width), seen);
@@ -192,9 +171,9 @@ fn without_webgl_or_without_a_body_touch_over_time_is_shown() {
 fn an_estimate_has_a_page_of_its_own() {
     let folder = simulated();
     let truth = "--labels body/labels.csv --tree body/tree.csv";
-    let tree = fs::read_to_string(folder.path().join("body/tree.csv")).unwrap();
-    succeed(folder.path(), &format!("estimate body/tactile.npy {truth} --interval 0.1 --out own"));
-    let page = fs::read_to_string(folder.path().join("own/report.html")).unwrap();
+    let tree = folder.text("body/tree.csv");
+    folder.succeed(&format!("estimate body/tactile.npy {truth} --interval 0.1 --out own"));
+    let page = folder.text("own/report.html");
     assert!(
         page.len() < 3_000_000 && page.contains("Against the truth: adjusted Rand index"),
         "{}",
@@ -209,24 +188,25 @@ fn an_estimate_has_a_page_of_its_own() {
     }
     // Not over the true tree.
     for wrong in ["--interval 0 --out own", "--out body"] {
-        let output = bodyschema(folder.path(), &format!("estimate body/tactile.npy {wrong}"));
-        assert_eq!(output.status.code(), Some(2), "{output:?}");
+        let said = folder.run(&format!("estimate body/tactile.npy {wrong}"));
+        assert_eq!(said.status, Some(2), "{said:?}");
     }
-    assert_eq!(fs::read_to_string(folder.path().join("body/tree.csv")).unwrap(), tree);
+    assert_eq!(folder.text("body/tree.csv"), tree);
 }
 
 #[test]
 fn times_of_an_estimate_count_the_samples_that_were_lost() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = Folder::new();
     let felt = |t: usize, sensor: usize| (0.1 * t as f64 + sensor as f64).sin().max(0.0);
     let row = |t: usize| {
         let cells = (0..12)
             .map(|sensor| if (10..60).contains(&t) { "nan".to_owned() } else { felt(t, sensor).to_string() });
         cells.collect::<Vec<_>>().join(",") + "\n"
     };
-    fs::write(folder.path().join("touch.csv"), (0..200).map(row).collect::<String>()).unwrap();
-    succeed(folder.path(), "estimate touch.csv --interval 0.5 --out own");
-    let scene = &scenes(&fs::read_to_string(folder.path().join("own/report.html")).unwrap())[0];
+    folder.write("touch.csv", (0..200).map(row).collect::<String>());
+    let said = folder.run("estimate touch.csv --interval 0.5 --out own");
+    assert_eq!(said.status, Some(0), "{said:?}");
+    let scene = &scenes(&folder.text("own/report.html"))[0];
     let times = scene["times"].as_array().unwrap();
     assert_eq!(times.len(), 150);
     assert_eq!([9, 10, 149].map(|frame| times[frame].as_f64().unwrap()), [4.5, 30.0, 99.5]);
@@ -235,63 +215,49 @@ fn times_of_an_estimate_count_the_samples_that_were_lost() {
 #[test]
 fn of_many_draws_that_of_highest_log_posterior_is_shown() {
     let folder = simulated();
-    let at = |name: &str| folder.path().join(name);
-    succeed(folder.path(), "distance body/tactile.npy --out distance.npy");
-    succeed(folder.path(), "map distance.npy --dims 5 --out body-map.npy");
-    succeed(folder.path(), "infer body-map.npy --chains 20 --sweeps 20 --start uniform --out draws");
-    let samples = fs::read_to_string(at("draws/samples.csv")).unwrap();
-    let cell = |row: &str, name: &str| -> f64 {
-        let column = samples.lines().next().unwrap().split(',').position(|column| column == name).unwrap();
-        row.split(',').nth(column).unwrap().parse().unwrap()
-    };
-    let height = |row: &&str| cell(row, "log_posterior");
-    let best = samples.lines().skip(1).max_by(|a, b| height(a).total_cmp(&height(b))).unwrap();
-    let (chain, parts) = (cell(best, "chain"), cell(best, "parts"));
-    assert!(chain > 0.0, "the first draw is no test: {samples}");
+    folder.succeed("distance body/tactile.npy --out distance.npy");
+    folder.succeed("map distance.npy --dims 5 --out body-map.npy");
+    folder.succeed("infer body-map.npy --chains 20 --sweeps 20 --start uniform --out draws");
+    let samples = folder.rows("draws/samples.csv");
+    let height = |row: &BTreeMap<String, String>| row["log_posterior"].parse::<f64>().unwrap();
+    let best = samples.iter().max_by(|a, b| height(a).total_cmp(&height(b))).unwrap();
+    assert_ne!(best["chain"], "0", "the first draw is no test: {samples:?}");
 
-    let page = page(folder.path(), "body --estimate draws");
+    let page = page(&folder, "body --estimate draws");
     let estimate = &scenes(&page)[0]["estimate"];
     let mut sensors = BTreeMap::<u64, usize>::new();
-    estimate["of"]
-        .as_array()
-        .unwrap()
+    for part in estimate["of"].as_array().unwrap() {
+        *sensors.entry(part.as_u64().unwrap()).or_default() += 1;
+    }
+    let parts = sensors.values().filter(|sensors| **sensors > 1).count();
+    assert_eq!(parts.to_string(), best["parts"], "{sensors:?}");
+    let trees = folder.rows("draws/trees.csv");
+    let own: Vec<[u64; 2]> = trees
         .iter()
-        .for_each(|part| *sensors.entry(part.as_u64().unwrap()).or_default() += 1);
-    assert_eq!(sensors.values().filter(|sensors| **sensors > 1).count() as f64, parts, "{sensors:?}");
-    let trees = fs::read_to_string(at("draws/trees.csv")).unwrap();
-    let own =
-        trees.lines().skip(1).filter(|row| row.split(',').next().unwrap().parse::<f64>().unwrap() == chain);
-    let own: Vec<Vec<u64>> =
-        own.map(|row| row.split(',').skip(1).take(2).map(|part| part.parse().unwrap()).collect()).collect();
-    let shown: Vec<Vec<u64>> = estimate["tree"]
-        .as_array()
-        .unwrap()
-        .iter()
-        .map(|edge| ["child", "parent"].map(|end| edge[end].as_u64().unwrap()).to_vec())
+        .filter(|row| row["chain"] == best["chain"])
+        .map(|row| ["child", "parent"].map(|end| row[end].parse().unwrap()))
         .collect();
-    assert_eq!(shown, own);
+    let edge = |edge: &Value| ["child", "parent"].map(|end| edge[end].as_u64().unwrap());
+    assert_eq!(estimate["tree"].as_array().unwrap().iter().map(edge).collect::<Vec<_>>(), own);
 
     // Draws of another body.
-    fs::write(at("two.csv"), "1,2\n3,4\n").unwrap();
-    let output = bodyschema(folder.path(), "view body --tactile two.csv --estimate draws");
-    assert_eq!(output.status.code(), Some(2), "{output:?}");
+    folder.write("two.csv", "1,2\n3,4\n");
+    let said = folder.run("view body --tactile two.csv --estimate draws");
+    assert_eq!(said.status, Some(2), "{said:?}");
 }
 
 #[test]
 fn what_does_not_fit_is_said_in_one_line() {
     let folder = simulated();
-    let at = |name: &str| folder.path().join(name);
-    for name in ["empty", "fewer", "own", "torn"] {
-        fs::create_dir(at(name)).unwrap();
-    }
-    fs::write(at("own/tactile.csv"), "1,2\n3,4\n").unwrap();
-    fs::write(at("fewer/parts.csv"), "sensor,part\n0,0\n1,1\n").unwrap();
-    fs::write(at("fewer/summary.json"), "{\"sensors\": 2}").unwrap();
-    fs::write(at("own/parts.csv"), "sensor,part\n0,0\n1,1\n").unwrap();
-    fs::write(at("own/tree.csv"), "child,parent\n1,7\n").unwrap();
-    fs::write(at("torn/tactile.csv"), "1,2\n3,4\n").unwrap();
+    fs::create_dir(folder.at("empty")).unwrap();
+    folder.write("own/tactile.csv", "1,2\n3,4\n");
+    folder.write("fewer/parts.csv", "sensor,part\n0,0\n1,1\n");
+    folder.write("fewer/summary.json", "{\"sensors\": 2}");
+    folder.write("own/parts.csv", "sensor,part\n0,0\n1,1\n");
+    folder.write("own/tree.csv", "child,parent\n1,7\n");
+    folder.write("torn/tactile.csv", "1,2\n3,4\n");
     for name in ["solids.csv", "sensors.csv", "poses.npy"] {
-        fs::copy(at("body").join(name), at("torn").join(name)).unwrap();
+        fs::copy(folder.at("body").join(name), folder.at("torn").join(name)).unwrap();
     }
     for (arguments, expected) in [
         ("absent", "absent: no such folder"),
@@ -306,10 +272,6 @@ fn what_does_not_fit_is_said_in_one_line() {
             "torn/poses.npy: is of 840 sensors and 600 samples, but the pressures are of 2 sensors and 2 samples",
         ),
     ] {
-        let output = bodyschema(folder.path(), &format!("view {arguments}"));
-        let errors = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(output.status.code(), Some(2), "{arguments}: {errors}");
-        assert_eq!(errors.lines().count(), 1, "{arguments}: {errors}");
-        assert!(errors.contains(expected), "{arguments}: {errors:?} lacks {expected:?}");
+        folder.refuse(&format!("view {arguments}"), expected);
     }
 }

@@ -1,9 +1,10 @@
 //! Open pages in headless Chromium, and ask axe-core whether they are accessible.
 
 use std::fs;
-use std::io::{ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::process::Command;
+
+use super::tools::{run, skipped};
 
 /// Loads the page at the width of a phone and of a desk, and lists what axe-core finds against WCAG 2.1 A and AA.
 const ACCESSIBILITY: &str = r#"<!doctype html><meta charset="utf-8"><body><pre id="seen"></pre><script>
@@ -33,24 +34,16 @@ pub fn quoted(text: &str) -> String {
 pub fn seen(harness: &str, folder: &Path, options: &[&str]) -> Option<String> {
     let page = folder.join("harness.html");
     fs::write(&page, harness).unwrap();
-    let output = Command::new("chromium")
+    let mut chromium = Command::new("chromium");
+    chromium
         .args(["--headless", "--no-sandbox", "--disable-dev-shm-usage", "--no-first-run"])
         .args(["--disable-background-networking", "--disable-component-update", "--disable-sync"])
         .arg(format!("--user-data-dir={}", folder.join("chromium").display()))
         .args(options)
         .arg("--dump-dom")
-        .arg(format!("file://{}", page.display()))
-        .output();
-    let output = match output {
-        Ok(output) => output,
-        Err(error) if error.kind() == ErrorKind::NotFound => {
-            skipped("there is no Chromium (Debian's package chromium)");
-            return None;
-        }
-        Err(error) => panic!("Chromium cannot be started: {error}"),
-    };
-    let page = String::from_utf8_lossy(&output.stdout);
-    let (_, rest) = page.split_once("id=\"seen\">").unwrap_or_else(|| panic!("{output:?}"));
+        .arg(format!("file://{}", page.display()));
+    let said = run(&mut chromium)?;
+    let (_, rest) = said.out.split_once("id=\"seen\">").unwrap_or_else(|| panic!("{said:?}"));
     let (seen, _) = rest.split_once("</pre>").unwrap();
     Some(seen.replace("&lt;", "<").replace("&gt;", ">").replace("&amp;", "&"))
 }
@@ -58,7 +51,7 @@ pub fn seen(harness: &str, folder: &Path, options: &[&str]) -> Option<String> {
 /// What keeps some readers from a page, by axe-core; none, with a message, without Chromium or axe-core.
 pub fn inaccessible(page: &str, folder: &Path, options: &[&str]) -> Option<Vec<String>> {
     let Some(axe) = axe() else {
-        skipped("axe-core is missing (pip install -r tests/requirements.txt)");
+        skipped("axe-core is missing");
         return None;
     };
     let axe = fs::read_to_string(axe).unwrap();
@@ -83,9 +76,4 @@ fn axe() -> Option<PathBuf> {
             .filter_map(|python| Some(python.ok()?.path().join("site-packages/axe_core_python/axe.min.js")))
             .find(|path| path.is_file())
     })
-}
-
-/// Says why a check is left out. Not by eprintln, which the test harness would keep to itself.
-fn skipped(why: &str) {
-    std::io::stderr().write_all(format!("skipped: {why}\n").as_bytes()).unwrap();
 }
