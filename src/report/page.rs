@@ -176,6 +176,9 @@ fn svg_element(svg: &str) -> &str {
 }
 
 fn settings_section(settings: &Value) -> Markup {
+    let value = |key: &str| key.split('.').fold(settings, |table, name| &table[name]);
+    // Of a random movement there is no rhythm.
+    let all = stated_settings().into_iter().filter(|own| !value(&own.key).is_null());
     html! {
         section id="settings" {
             h2 { "Settings" }
@@ -185,8 +188,8 @@ fn settings_section(settings: &Value) -> Markup {
                 thead { tr { th scope="col" { "setting" } th scope="col" { "value" } th scope="col" { "source" }
                     th scope="col" { "meaning" } } }
                 tbody {
-                    @for Setting { key, default, source, meaning } in stated_settings() {
-                        @let value = text(key.split('.').fold(settings, |table, name| &table[name]));
+                    @for Setting { key, default, source, meaning } in all {
+                        @let value = text(value(&key));
                         tr {
                             td data-label="setting" { code { (key) } }
                             td data-label="value" {

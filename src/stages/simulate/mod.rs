@@ -7,10 +7,13 @@
 pub(crate) mod fixtures;
 mod motor;
 mod movement;
+mod rhythm;
 mod settings;
 #[allow(unsafe_code, reason = "the physics engine is a C library")]
 mod world;
 
 pub use self::movement::{Resolution, Trajectory, simulate};
-pub use self::settings::{AngleError, AngularMomentum, Controller, Motion, Physics, Targets};
+pub use self::settings::{
+    AngleError, AngularMomentum, Controller, Motion, Movement, Physics, Rhythm, Targets,
+};
 pub use self::world::{Pose, Unstable, engine};

@@ -92,7 +92,7 @@ pub fn simulate(
     let (parts, joints) = (agent.parts.len(), agent.joints.len());
     let (samples, steps_per_sample) = (physics.samples(interval), physics.steps_per_sample(interval));
     let mut world = World::new(agent, physics);
-    let mut motor = Motor::new(&agent.joints);
+    let mut motor = Motor::new(&agent.joints, motion, physics.step, rng);
     let mut trajectory = Trajectory {
         parts,
         joints,
