@@ -3,11 +3,12 @@
 use std::collections::HashSet;
 
 use serde::Deserialize;
+use serde_json::Value;
 use toml::Table;
 
 use super::super::design::flat;
 use super::super::error::ExperimentError;
-use crate::settings::Settings;
+use crate::settings::{PAPER, Settings};
 
 /// What is varied, and how each configuration is run.
 #[derive(Debug, Clone, Deserialize)]
@@ -121,9 +122,12 @@ pub fn label(value: &Table) -> String {
 
 /// The default of a setting `section.key`, as settings files write it.
 pub fn default_value(settings: &Settings, key: &str) -> Option<String> {
-    let all = serde_json::to_value(settings).expect("settings are plain data");
-    let value = key.split('.').try_fold(&all, |table, name| table.get(name))?;
-    Some(value.to_string().replace('"', ""))
+    let own = serde_json::to_value(settings).expect("settings are plain data");
+    // Settings of a random movement lack the rhythm.
+    let paper: Table = PAPER.parse().expect("reproduce/paper.toml is TOML");
+    let paper = serde_json::to_value(paper).expect("settings are plain data");
+    let within = |all| key.split('.').try_fold(all, |table: &Value, name| table.get(name));
+    Some(within(&own).or_else(|| within(&paper))?.to_string().replace('"', ""))
 }
 
 impl Factor {
@@ -149,12 +153,19 @@ fn is_plain(name: &str) -> bool {
 mod tests {
     use super::super::super::design::SENSITIVITY;
     use super::*;
-    use crate::settings::PAPER;
 
     #[test]
     fn the_design_of_the_repository_can_be_run() {
         let study = Design::parse(SENSITIVITY, "sensitivity.toml").unwrap();
         assert!(study.configurations().unwrap().len() > 60);
+    }
+
+    #[test]
+    fn a_study_may_vary_the_rhythm_that_the_default_lacks() {
+        let default = |key| default_value(&Settings::paper(), key);
+        assert_eq!(default("motion.movement"), Some("random".to_owned()));
+        assert_eq!(default("motion.rhythm.frequency"), Some("0.2".to_owned()));
+        assert_eq!(default("motion.rhythm.speed"), None);
     }
 
     #[test]

@@ -1,9 +1,9 @@
-//! Move the joints at random, in coordination: lock each joint, or drive it to a random target (section 5.1).
+//! Move the joints in coordination: lock each joint, or drive it to a random target (section 5.1) or along a sinusoid.
 //!
 //! Every joint is locked at the beginning. At the end of each epoch, each joint is drawn anew: with probability 1 − p it
 //! moves to a random target, uniform on [−π, π], under a linear controller; otherwise it is locked at its present angle.
 //! The paper leaves open what the controller is, its gains, and whether the two axes of a universal joint share one
-//! target. In a rhythmic movement, the target of a joint that moves is that of its oscillators, which never stop.
+//! target. In a rhythmic movement, the target of a joint that moves is that of the oscillators, which never stop.
 
 use std::f64::consts::{PI, TAU};
 

@@ -1,4 +1,4 @@
-//! Move an agent at random for a given time and record its trajectory (section 5.1).
+//! Move an agent for a given time and record its trajectory (section 5.1).
 
 use serde::{Deserialize, Serialize};
 

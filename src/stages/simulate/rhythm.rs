@@ -23,9 +23,11 @@ pub struct Oscillators {
     phase: f64,
     /// ln(f / f₀) at the beginning and at the end of this epoch.
     deviations: [f64; 2],
-    /// Physics steps of an epoch, and those of this one that have passed.
-    steps: [usize; 2],
-    /// Duration of a physics step, s.
+    /// Physics steps of an epoch.
+    epoch: usize,
+    /// Steps of this epoch that have passed.
+    passed: usize,
+    /// Duration of a step, s.
     step: f64,
 }
 
@@ -69,14 +71,8 @@ impl Oscillators {
             axes.push(own);
         }
         let first = rhythm.frequency_spread * rng.sample::<f64, _>(StandardNormal);
-        let mut own = Self {
-            rhythm: rhythm.clone(),
-            axes,
-            phase: 0.0,
-            deviations: [first; 2],
-            steps: [epoch, 0],
-            step,
-        };
+        let mut own =
+            Self { rhythm: rhythm.clone(), axes, phase: 0.0, deviations: [first; 2], epoch, passed: 0, step };
         own.begin_epoch(rng);
         own
     }
@@ -84,26 +80,25 @@ impl Oscillators {
     /// Draws the frequency at the end of the epoch that begins.
     pub fn begin_epoch(&mut self, rng: &mut Stream) {
         let Rhythm { frequency_spread, frequency_time, .. } = self.rhythm;
-        let [epoch, _] = self.steps;
-        let decay = epoch as f64 * self.step / frequency_time;
+        let decay = self.epoch as f64 * self.step / frequency_time;
         let [_, now] = self.deviations;
         let news =
             frequency_spread * (-libm::expm1(-2.0 * decay)).sqrt() * rng.sample::<f64, _>(StandardNormal);
         self.deviations = [now, libm::exp(-decay) * now + news];
-        self.steps = [epoch, 0];
+        self.passed = 0;
     }
 
     /// f at the middle of the next step, Hz.
     fn frequency(&self) -> f64 {
-        let ([from, to], [epoch, passed]) = (self.deviations, self.steps);
-        let share = (passed as f64 + 0.5) / epoch as f64;
+        let [from, to] = self.deviations;
+        let share = (self.passed as f64 + 0.5) / self.epoch as f64;
         self.rhythm.frequency * libm::exp(from + share * (to - from))
     }
 
     /// Goes on by a step.
     pub fn advance(&mut self) {
         self.phase = (self.phase + TAU * self.frequency() * self.step) % TAU;
-        self.steps[1] += 1;
+        self.passed += 1;
     }
 
     /// The target of a joint, rad: its angles or, of a ball joint, the vector of its rotation.
