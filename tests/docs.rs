@@ -95,7 +95,7 @@ fn the_page_of_settings_has_every_setting_that_is_ours_with_its_value() {
             section = name.trim_end_matches(']').to_owned();
         } else if let Some((assignment, comment)) = line.split_once('#')
             && let Some((name, value)) = assignment.split_once('=')
-            && comment.contains("ours")
+            && ["ours", "extension:"].iter().any(|source| comment.contains(source))
         {
             let (name, value) = (name.trim(), value.trim().trim_matches('"'));
             let row = page.lines().find(|row| row.contains(&format!("`{section}.{name}`")));

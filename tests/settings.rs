@@ -2,6 +2,7 @@
 //! panic, an abort of the physics engine, or a wait. Seeds are fixed; `BODYSCHEMA_CASES=50000` tries more.
 
 use std::collections::BTreeSet;
+use std::f64::consts::PI;
 use std::fmt::Write;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
@@ -37,7 +38,7 @@ enum Range {
 
 use Range::{Flag, Numbers, Probabilities, Real, Whole, Word};
 
-const SETTINGS: [(&str, Range); 61] = [
+const SETTINGS: [(&str, Range); 69] = [
     ("agent.morphology", Word(&["chain", "star", "tee", "y"])),
     ("agent.part_length", Real(1e-3, 1e3)),
     ("agent.part_radius", Real(1e-3, 5.0)),
@@ -55,6 +56,14 @@ const SETTINGS: [(&str, Range); 61] = [
     ("motion.stiffness", Real(0.0, 1e6)),
     ("motion.damping", Real(0.0, 1e6)),
     ("motion.error", Word(&["raw", "shortest"])),
+    ("motion.movement", Word(&["random", "rhythmic"])),
+    ("motion.rhythm.frequency", Real(1e-4, 10.0)),
+    ("motion.rhythm.frequency_spread", Real(0.0, 1.0)),
+    ("motion.rhythm.frequency_time", Real(1e-6, 1e6)),
+    ("motion.rhythm.least_amplitude", Real(0.0, 0.75)),
+    ("motion.rhythm.largest_amplitude", Real(0.25, PI)),
+    ("motion.rhythm.phase_lag", Real(-PI, PI)),
+    ("motion.rhythm.phase_spread", Real(0.0, PI)),
     ("physics.step", Real(1e-5, 0.1)),
     ("physics.duration", Real(0.1, 238_095.2)),
     ("physics.turn_limit", Real(1e-3, 1e6)),
@@ -333,6 +342,10 @@ fn random_settings(rng: &mut Stream) -> String {
     // A light body that is driven hard is unstable; half of them are driven as the paper's.
     if rng.random_bool(0.5) {
         values.retain(|(key, _)| !["motion.stiffness", "motion.damping"].contains(key));
+    }
+    // Most steps are too long for a rhythm.
+    if rng.random_bool(0.75) {
+        values.retain(|(key, _)| *key != "motion.movement");
     }
     toml(&values)
 }

@@ -31,6 +31,10 @@ use crate::tasks::progress::progress;
 
 /// Stages 1 and 2: simulates a body that moves at random in a fluid, and records the pressures on its sensors.
 ///
+/// With the setting motion.movement = "rhythmic", the body swims instead: its joints swing as sinusoids that are out of phase.
+/// The setting motion.coordination is p, how probably a joint is locked for an epoch, of both movements; a body that shall travel
+/// needs p = 0 (--settings reproduce/rhythmic.toml).
+///
 /// Writes into DIR: tactile.npy (float32, T x M, Pa), labels.csv (sensor,part), tree.csv (child,parent) and
 /// joint-angles.csv (time_s, then the angles of each joint in rad; T + 1 rows); for `view` also solids.csv, sensors.csv and
 /// poses.npy (float32, T + 1 x 7 for each solid); with --body also names.csv (part,name). T is the number of

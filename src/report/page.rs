@@ -212,6 +212,9 @@ fn svg_element(svg: &str) -> &str {
 }
 
 fn settings_section(settings: &Value) -> Markup {
+    let value = |key: &str| key.split('.').fold(settings, |table, name| &table[name]);
+    // Of a random movement there is no rhythm.
+    let all = described().into_iter().filter(|own| !value(&own.key).is_null());
     html! {
         section id="settings" {
             h2 { "Settings" }
@@ -221,8 +224,8 @@ fn settings_section(settings: &Value) -> Markup {
                 thead { tr { th scope="col" { "setting" } th scope="col" { "value" } th scope="col" { "source" }
                     th scope="col" { "meaning" } } }
                 tbody {
-                    @for Described { key, default, source, meaning } in described() {
-                        @let value = text(key.split('.').fold(settings, |table, name| &table[name]));
+                    @for Described { key, default, source, meaning } in all {
+                        @let value = text(value(&key));
                         @let default = text(&default);
                         tr {
                             td data-label="setting" { code { (key) } }

@@ -41,7 +41,8 @@ const MAX_FILE_BYTES: u64 = 1 << 20;
 impl Settings {
     /// The settings of the replication: `reproduce/paper.toml`.
     pub fn paper() -> Self {
-        Table::try_into(paper_table()).expect("reproduce/paper.toml matches Settings; a test checks it")
+        Self::checked(paper_table(), "reproduce/paper.toml")
+            .expect("reproduce/paper.toml matches Settings; a test checks it")
     }
 
     /// `reproduce/paper.toml`, with `reproduce/quick.toml` over it if `quick`, and `file` over both.
@@ -93,7 +94,10 @@ impl Settings {
         // TOML has no numbers above 2⁶³, which a seed may be.
         let mut plain = self.clone();
         plain.experiment.seed = 0;
-        let mut table = Table::try_from(&plain).expect("settings can be written as a table");
+        let plain = Table::try_from(&plain).expect("settings can be written as a table");
+        // Those of a random movement lack the rhythm, which the text may name.
+        let mut table = paper_table();
+        overlay(&mut table, plain, "", origin)?;
         overlay(&mut table, parse(text, origin)?, "", origin)?;
         let mut settings = Self::checked(table, origin)?;
         settings.experiment.seed = self.experiment.seed;
@@ -101,11 +105,12 @@ impl Settings {
     }
 
     fn checked(table: Table, origin: &str) -> Result<Self, SettingsError> {
-        let settings: Self = table.try_into().map_err(|error: toml::de::Error| SettingsError::Malformed {
-            message: one_line(&error.to_string()),
-            origin: origin.to_owned(),
+        let mut settings: Self = table.try_into().map_err(|error: toml::de::Error| {
+            SettingsError::Malformed { message: one_line(&error.to_string()), origin: origin.to_owned() }
         })?;
         settings.validate()?;
+        // What does not count is not written: files of a random movement are what they were before there was a rhythm.
+        settings.motion.rhythm = settings.motion.rhythm.filter(|_| !settings.motion.movement.is_random());
         Ok(settings)
     }
 }

@@ -85,7 +85,7 @@ impl Settings {
     }
 
     /// Checks that samples are whole steps apart, and not too many to keep or to wait for: 2 billion pressures are 8 GB,
-    /// 20 million samples 13 GB of poses, and a billion steps take hours.
+    /// 20 million samples 13 GB of poses, and a billion steps take hours. Checks that a step is short enough for a rhythm.
     ///
     /// # Errors
     /// The first setting that is outside its range for a body with so many sensors.
@@ -94,6 +94,10 @@ impl Settings {
         let ratio = interval / step;
         let whole = ratio >= 0.5 && (ratio - ratio.round()).abs() < 1e-6 * ratio;
         check("sense.interval", interval, whole, "a whole number of physics.step")?;
+        if let Some(rhythm) = self.motion.rhythm() {
+            let range = "at most 0.05 / physics.step, which makes a cycle at least 20 steps";
+            check("motion.rhythm.frequency", rhythm.frequency, rhythm.frequency * step <= 0.05, range)?;
+        }
         let (samples, steps) = (duration / interval, duration / step);
         check(
             "physics.duration",

@@ -15,7 +15,7 @@ pub struct Described {
     pub key: String,
     /// Its value in `reproduce/paper.toml`.
     pub default: Value,
-    /// `stated (SECTION)` if the paper gives that value, or else `ours`.
+    /// `stated (SECTION)` if the paper gives that value, `ours` if it leaves it open, `extension` if it has nothing of the kind.
     pub source: String,
     /// What it means, with its unit and its other values.
     pub meaning: String,
@@ -32,7 +32,12 @@ struct Entry {
 /// All settings, in the order of `reproduce/paper.toml`.
 pub fn described() -> Vec<Described> {
     let sources = toml::from_str(SOURCES).expect("reproduce/sources.toml is TOML; a test checks it");
-    let defaults = serde_json::to_value(Settings::paper()).expect("settings are plain data");
+    // Settings of a random movement do not write the rhythm, which has defaults, too.
+    let rhythmic = "[motion]\nmovement = \"rhythmic\"".parse().expect("it is TOML");
+    let rhythmic =
+        Settings::overlaid([&rhythmic], "defaults").expect("the defaults of a rhythm are in range");
+    let mut defaults = serde_json::to_value(rhythmic).expect("settings are plain data");
+    defaults["motion"]["movement"] = "random".into();
     let mut all = Vec::new();
     gather("", &defaults, &sources, &mut all);
     all
@@ -83,7 +88,10 @@ mod tests {
     #[test]
     fn every_setting_has_the_source_and_the_meaning_that_its_comment_gives() {
         let in_words = |Described { key, source, meaning, .. }| {
-            assert!(source == "ours" || source.starts_with("stated ("), "{key}: {source}");
+            assert!(
+                ["ours", "extension"].contains(&source.as_str()) || source.starts_with("stated ("),
+                "{key}: {source}"
+            );
             (key, format!("{source}: {meaning}"))
         };
         let described: Vec<_> = described().into_iter().map(in_words).collect();

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
 
-use crate::settings::Settings;
+use crate::settings::{PAPER, Settings};
 
 /// Lays `over` on `base`, section by section.
 pub fn merge(base: &mut Table, over: &Table) {
@@ -39,9 +39,12 @@ pub fn short(table: &Table) -> String {
 
 /// The value of a setting `section.key`, as settings files write it.
 pub fn value_of(settings: &Settings, key: &str) -> Option<String> {
-    let all = serde_json::to_value(settings).expect("settings are plain data");
-    let value = key.split('.').try_fold(&all, |table, name| table.get(name))?;
-    Some(value.to_string().replace('"', ""))
+    let own = serde_json::to_value(settings).expect("settings are plain data");
+    // Settings of a random movement do not write the rhythm, which has defaults, too.
+    let defaults: Table = PAPER.parse().expect("reproduce/paper.toml is TOML");
+    let defaults = serde_json::to_value(defaults).expect("settings are plain data");
+    let within = |all| key.split('.').try_fold(all, |table: &serde_json::Value, name| table.get(name));
+    Some(within(&own).or_else(|| within(&defaults))?.to_string().replace('"', ""))
 }
 
 /// The gains of a torque, by what they do to the body that they are for.

@@ -1,5 +1,6 @@
 //! Read the design of the study of bodies: which bodies, how they move, and how much is recorded.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
@@ -24,10 +25,24 @@ pub struct Design {
     pub chains: usize,
     /// Files of the bodies, from the folder of the design.
     pub bodies: Vec<PathBuf>,
+    /// Kinds of movement; none if there is one, that of the settings.
+    #[serde(rename = "movement", default, skip_serializing_if = "Vec::is_empty")]
+    pub kinds: Vec<Kind>,
     /// What is recorded of each movement.
     #[serde(rename = "recording")]
     pub recordings: Vec<Recording>,
     /// What is not as in `reproduce/paper.toml`.
+    #[serde(default)]
+    pub settings: Table,
+}
+
+/// A kind of movement, such as a rhythmic one.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Kind {
+    /// Its name in tables.
+    pub name: String,
+    /// What is not as in the settings of the design.
     #[serde(default)]
     pub settings: Table,
 }
@@ -40,6 +55,28 @@ pub struct Recording {
     pub samples: usize,
     /// Standard deviation of the noise that is added to each pressure, over the root mean square of its sensor.
     pub noise: f64,
+}
+
+/// How a body moves.
+#[derive(Debug, Clone, Copy)]
+pub struct Way<'a> {
+    /// The kind of movement; `None` if there is one.
+    pub kind: Option<&'a Kind>,
+    /// p.
+    pub coordination: f64,
+}
+
+impl Way<'_> {
+    /// The name of the kind.
+    pub fn name(&self) -> Option<&str> {
+        self.kind.map(|kind| kind.name.as_str())
+    }
+
+    /// In words, such as `p = 0.5` or `rhythmic, p = 0.5`.
+    pub fn words(&self) -> String {
+        let kind = self.name().map_or(String::new(), |name| format!("{name}, "));
+        format!("{kind}p = {}", self.coordination)
+    }
 }
 
 /// A body of the study.
@@ -72,6 +109,12 @@ impl Design {
                 "a [[recording]] must have samples of at least 100, and noise from 0 to 10".to_owned(),
             ));
         }
+        let plain = |name: &str| name.bytes().all(|letter| letter.is_ascii_alphanumeric() || letter == b'-');
+        let kinds: BTreeSet<&str> = design.kinds.iter().map(|kind| kind.name.as_str()).collect();
+        if kinds.len() < design.kinds.len() || kinds.iter().any(|name| name.is_empty() || !plain(name)) {
+            let rule = "each [[movement]] must have a name of its own, of letters, digits and hyphens";
+            return Err(wrong(rule.to_owned()));
+        }
         let mut names: Vec<_> = bodies.iter().map(|file| file.file_stem()).collect();
         names.sort_unstable();
         if let Some(pair) = names.windows(2).find(|pair| pair[0] == pair[1]) {
@@ -95,12 +138,21 @@ impl Design {
         self.bodies.iter().map(read).collect()
     }
 
-    /// The settings of the movements at p, as long as the longest recording.
+    /// How bodies move, one way after the other: each kind at each p.
+    pub fn ways(&self) -> Vec<Way<'_>> {
+        let kinds: Vec<Option<&Kind>> =
+            if self.kinds.is_empty() { vec![None] } else { self.kinds.iter().map(Some).collect() };
+        let at_each = |kind| self.coordinations.iter().map(move |&coordination| Way { kind, coordination });
+        kinds.into_iter().flat_map(at_each).collect()
+    }
+
+    /// The settings of movements of some way, as long as the longest recording.
     ///
     /// # Errors
     /// If they cannot be used.
-    pub fn settings_at(&self, coordination: f64) -> Result<Settings, ExperimentError> {
-        let mut settings = Settings::overlaid([&self.settings], "the design")?;
+    pub fn settings_of(&self, Way { kind, coordination }: Way) -> Result<Settings, ExperimentError> {
+        let own = kind.map(|kind| &kind.settings);
+        let mut settings = Settings::overlaid([&self.settings].into_iter().chain(own), "the design")?;
         let samples = self.recordings.iter().map(|one| one.samples).max().unwrap_or(0);
         settings.physics.duration = samples as f64 * settings.sense.interval;
         settings.motion.coordination = coordination;

@@ -3,7 +3,7 @@
 use rand_distr::{Distribution, StandardNormal};
 use serde::{Deserialize, Serialize};
 
-use super::design::{Design, Recording, StudyBody};
+use super::design::{Design, Recording, StudyBody, Way};
 use super::peers;
 use crate::estimate::estimate;
 use crate::numerics::rng::stream;
@@ -25,6 +25,8 @@ pub struct Movement<'a> {
     pub body: &'a StudyBody,
     /// Its place in the design.
     pub of_body: usize,
+    /// How it moves.
+    pub way: Way<'a>,
     /// The settings.
     pub settings: &'a Settings,
     /// Its number, from 1.
@@ -36,6 +38,9 @@ pub struct Movement<'a> {
 pub struct Row {
     /// The body.
     pub body: String,
+    /// The kind of movement, if the study has kinds.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub kind: Option<String>,
     /// p.
     pub coordination: f64,
     /// The movement, from 1.
@@ -75,6 +80,9 @@ pub struct Row {
 pub struct EdgeRow {
     /// The body.
     pub body: String,
+    /// The kind of movement, if the study has kinds.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub kind: Option<String>,
     /// p.
     pub coordination: f64,
     /// The movement, from 1.
@@ -101,10 +109,11 @@ pub struct Found {
 impl Movement<'_> {
     /// The name of its checkpoint.
     pub fn name(&self) -> String {
-        format!("{}-p{}-{}", self.body.name, self.settings.motion.coordination, self.number)
+        let kind = self.way.name().map_or(String::new(), |kind| format!("-{kind}"));
+        format!("{}{kind}-p{}-{}", self.body.name, self.way.coordination, self.number)
     }
 
-    /// A number that no other movement at its p has, for its streams of random numbers: movements at all p share them.
+    /// A number that no other movement of its way has, for its streams of random numbers: movements of all ways share them.
     fn simulation(&self) -> usize {
         (self.number - 1) * self.design.bodies.len() + self.of_body + 1
     }
@@ -140,7 +149,8 @@ impl Movement<'_> {
     fn nothing(&self, seen: &Seen) -> Row {
         Row {
             body: self.body.name.clone(),
-            coordination: self.settings.motion.coordination,
+            kind: self.way.name().map(str::to_owned),
+            coordination: self.way.coordination,
             movement: self.number,
             samples: seen.recording.samples,
             noise: seen.recording.noise,
@@ -199,6 +209,7 @@ impl Movement<'_> {
         };
         let edge = |edge: &Edge| EdgeRow {
             body: row.body.clone(),
+            kind: row.kind.clone(),
             coordination: row.coordination,
             movement: row.movement,
             samples,

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::design::{Design, Recording};
+use super::design::{Design, Recording, Way};
 use super::movement::{EdgeRow, Row};
 use crate::analysis::published::Unit;
 use crate::analysis::statistics::{mean, rate};
@@ -52,9 +52,9 @@ pub struct Page<'a> {
 }
 
 impl Page<'_> {
-    /// The rows of a recording at p.
-    fn rows_of(&self, p: f64, recording: &Recording) -> Vec<&Row> {
-        self.rows.iter().filter(|row| is_of(row, p, recording)).collect()
+    /// The rows of a recording of movements of some way.
+    fn rows_of(&self, way: Way, recording: &Recording) -> Vec<&Row> {
+        self.rows.iter().filter(|row| is_of(row, way, recording)).collect()
     }
 
     /// The picture: how often each method is right, of each recording at each p.
@@ -65,21 +65,18 @@ impl Page<'_> {
             let rate = rate(rows.iter().filter(|row| right(row)).count(), rows.len());
             Some((rate.value?, rate.interval))
         };
-        let line = |p: f64, recording: &Recording| {
-            let own = self.rows_of(p, recording);
+        let line = |way: Way, recording: &Recording| {
+            let own = self.rows_of(way, recording);
             let noise =
                 if recording.noise > 0.0 { format!(", noise {}", recording.noise) } else { String::new() };
             Line {
-                label: format!("p = {p}, T = {}{noise}", recording.samples),
+                label: format!("{}, T = {}{noise}", way.words(), recording.samples),
                 cells: METHODS.map(|(_, right)| cell(&own, right)).to_vec(),
             }
         };
         let recordings = &self.design.recordings;
-        let lines = self
-            .design
-            .coordinations
-            .iter()
-            .flat_map(|&p| recordings.iter().map(move |recording| line(p, recording)));
+        let ways = self.design.ways().into_iter();
+        let lines = ways.flat_map(|way| recordings.iter().map(move |recording| line(way, recording)));
         (TITLES.map(column).to_vec(), lines.collect())
     }
 
@@ -104,19 +101,21 @@ impl Page<'_> {
             .to_owned(),
         format!("![How often each method is right]({PICTURE})\n"),
     ];
-        let header = ["p", "T", "noise", "n"].into_iter().chain(METHODS.map(|(name, _)| name));
+        let kind = (!design.kinds.is_empty()).then_some("movement");
+        let header = kind.into_iter().chain(["p", "T", "noise", "n"]).chain(METHODS.map(|(name, _)| name));
         lines.push(row(header));
-        lines.push(rule(4 + METHODS.len()));
-        for &p in &design.coordinations {
+        lines.push(rule(kind.iter().count() + 4 + METHODS.len()));
+        for way in design.ways() {
             for recording in &design.recordings {
-                let own = self.rows_of(p, recording);
+                let own = self.rows_of(way, recording);
                 let cells = [
-                    p.to_string(),
+                    way.coordination.to_string(),
                     recording.samples.to_string(),
                     recording.noise.to_string(),
                     own.len().to_string(),
                 ];
-                lines.push(row(cells.into_iter().chain(METHODS.map(|(_, right)| share(&own, right)))));
+                let cells = way.name().map(str::to_owned).into_iter().chain(cells);
+                lines.push(row(cells.chain(METHODS.map(|(_, right)| share(&own, right)))));
             }
         }
         lines
@@ -135,17 +134,18 @@ impl Page<'_> {
             ),
         ];
         let header = ["body".to_owned(), "parts".to_owned()];
-        lines.push(row(header.into_iter().chain(design.coordinations.iter().map(|p| format!("p = {p}")))));
-        lines.push(rule(2 + design.coordinations.len()));
+        let ways = design.ways();
+        lines.push(row(header.into_iter().chain(ways.iter().map(Way::words))));
+        lines.push(rule(2 + ways.len()));
         for body in rows.chunk_by(|a, b| a.body == b.body) {
-            let at = |p: &f64| {
-                let own: Vec<&Row> = body.iter().filter(|row| is_of(row, *p, &longest)).collect();
+            let at = |way: &Way| {
+                let own: Vec<&Row> = body.iter().filter(|row| is_of(row, *way, &longest)).collect();
                 let right = own.iter().filter(|row| row.tree_right).count();
                 let ari: Vec<f64> = own.iter().map(|row| row.ari).collect();
                 format!("{right} of {} ({:.2})", own.len(), mean(&ari).value.unwrap_or(0.0))
             };
             let first = [body[0].body.clone(), body[0].true_parts.to_string()];
-            lines.push(row(first.into_iter().chain(design.coordinations.iter().map(at))));
+            lines.push(row(first.into_iter().chain(ways.iter().map(at))));
         }
         lines
     }
@@ -176,8 +176,11 @@ impl Page<'_> {
 
     /// How often edges of these recordings are right, by their confidence.
     fn calibration(&self, recording: &Recording, parts_right: bool) -> String {
-        let of_row = |row: &Row| (row.body.clone(), row.coordination.to_bits(), row.movement);
-        let of_edge = |edge: &EdgeRow| (edge.body.clone(), edge.coordination.to_bits(), edge.movement);
+        let of_row =
+            |row: &Row| (row.body.clone(), row.kind.clone(), row.coordination.to_bits(), row.movement);
+        let of_edge = |edge: &EdgeRow| {
+            (edge.body.clone(), edge.kind.clone(), edge.coordination.to_bits(), edge.movement)
+        };
         let Recording { samples, noise } = *recording;
         let recordings: BTreeSet<_> = self
             .rows
@@ -206,15 +209,20 @@ fn about(design: &Design, rows: &[Row]) -> String {
             format!("The movements of {count} of {} recordings are too fast for the time step.", rows.len())
         }
     };
+    let kinds: Vec<&str> = design.kinds.iter().map(|kind| kind.name.as_str()).collect();
+    let (moves, each) = match kinds.as_slice() {
+        [] => ("moves at random", String::new()),
+        kinds => ("moves", format!("in each way ({}) ", kinds.join(", "))),
+    };
     format!(
-        "How often do `bodyschema estimate` and other methods recover the parts and the tree of a body that moves at \
-         random? The first table answers this.\n\n\
+        "How often do `bodyschema estimate` and other methods recover the parts and the tree of a body that {moves}? \
+         The first table answers this.\n\n\
          The committed study is not of the default configuration. Its design, \
          [bodies.toml](../../../reproduce/bodies.toml), moves as today's default does (`reproduce/paper.toml` as of \
          revision d8a6986, with two-way fluid coupling). Three things differ: a time step of 0.02 s, eight levels of \
          its own for each sensor, and skins that cover the ends of the parts. Its simulations are of revisions 363b89f \
          (1 to 6), 0e800e6 (7 to 9) and e0bd4f7 (10).\n\n\
-         {} bodies; simulations of each at each p: {}; seed {}; chains of each mixture: {}. {resolved} \
+         {} bodies; simulations of each {each}at each p: {}; seed {}; chains of each mixture: {}. {resolved} \
          `reproduce/bodies.sh` makes this page; each recording is a row of [recordings.csv](recordings.csv), each edge \
          of [edges.csv](edges.csv). How it works: [estimate.md](../../estimate.md).",
         design.bodies.len(),
@@ -224,8 +232,9 @@ fn about(design: &Design, rows: &[Row]) -> String {
     )
 }
 
-fn is_of(row: &Row, p: f64, recording: &Recording) -> bool {
-    row.coordination == p && row.samples == recording.samples && row.noise == recording.noise
+fn is_of(row: &Row, way: Way, recording: &Recording) -> bool {
+    let moved = row.kind.as_deref() == way.name() && row.coordination == way.coordination;
+    moved && row.samples == recording.samples && row.noise == recording.noise
 }
 
 /// The longest recording of least noise.
@@ -267,6 +276,7 @@ mod tests {
     fn edge(confidence: f64, right: bool) -> EdgeRow {
         EdgeRow {
             body: "star".to_owned(),
+            kind: None,
             coordination: 0.5,
             movement: 1,
             samples: 1000,

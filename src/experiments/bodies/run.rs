@@ -34,11 +34,11 @@ pub fn study(design: &Design, text: &str, path: &Path, out: &Path) -> Result<(),
     let mut folder = ResultFolder::new(out);
     let bodies = design.read_bodies(path)?;
     let settings = design
-        .coordinations
-        .iter()
-        .map(|&p| design.settings_at(p))
+        .ways()
+        .into_iter()
+        .map(|way| Ok((way, design.settings_of(way)?)))
         .collect::<Result<Vec<_>, ExperimentError>>()?;
-    for (body, settings) in
+    for (body, (_, settings)) in
         bodies.iter().flat_map(|body| settings.iter().map(move |settings| (body, settings)))
     {
         settings.check_times(body.body.agent.sites.len()).map_err(crate::settings::SettingsError::from)?;
@@ -69,14 +69,15 @@ pub fn study(design: &Design, text: &str, path: &Path, out: &Path) -> Result<(),
     let mut found: Vec<(usize, Found)> = Vec::new();
     for number in 1..=design.movements {
         let of_body = |(of_body, body)| {
-            settings.iter().map(move |settings| Movement { design, body, of_body, settings, number })
+            let movement = move |(way, settings)| Movement { design, body, of_body, way, settings, number };
+            settings.iter().map(move |(way, settings)| movement((*way, settings)))
         };
         let movements: Vec<Movement> = bodies.iter().enumerate().flat_map(of_body).collect();
         let results: Vec<Found> = movements.par_iter().map(run).collect::<Result<_, _>>()?;
         found.extend(results.into_iter().enumerate());
     }
     bar.finish_and_clear();
-    // By body, then by p, then by movement.
+    // By body, then by kind and p, then by movement.
     found.sort_by_key(|(place, _)| *place);
     let (mut rows, mut edges) = (Vec::new(), Vec::new());
     for (_, found) in found {

@@ -1,6 +1,6 @@
 //! Build a small body and its movement for the tests of this stage.
 
-use super::settings::{AngleError, AngularMomentum, Controller, Motion, Physics, Targets};
+use super::settings::{AngleError, AngularMomentum, Controller, Motion, Movement, Physics, Targets};
 use crate::stages::agent::{Agent, Geometry, Morphology, Skin};
 
 /// Everything that a simulation needs.
@@ -34,6 +34,8 @@ impl Scene {
                 servo_gain: 10.0,
                 servo_torque: 100.0,
                 error: AngleError::Shortest,
+                movement: Movement::Random,
+                rhythm: None,
             },
             physics: Physics {
                 step: 0.01,

@@ -1,4 +1,4 @@
-//! Stage 1, `simulate`: move an [agent](super::agent) at random in Open Dynamics Engine (section 5.1).
+//! Stage 1, `simulate`: move an [agent](super::agent) at random in Open Dynamics Engine (section 5.1), or in a rhythm.
 //!
 //! In: a body, settings of its [`Motion`] and of the [`Physics`] engine. Out: a [`Trajectory`], the pose of every part
 //! and the angles of every joint every Δt, with how well the step resolved the movement.
@@ -7,10 +7,13 @@
 pub(crate) mod fixtures;
 mod motor;
 mod movement;
+mod rhythm;
 mod settings;
 #[allow(unsafe_code, reason = "the physics engine is a C library")]
 mod world;
 
 pub use self::movement::{Resolution, Trajectory, simulate};
-pub use self::settings::{AngleError, AngularMomentum, Controller, Motion, Physics, Targets};
+pub use self::settings::{
+    AngleError, AngularMomentum, Controller, Motion, Movement, Physics, Rhythm, Targets,
+};
 pub use self::world::{Pose, Unstable, engine};

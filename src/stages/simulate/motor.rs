@@ -1,15 +1,16 @@
-//! Move the joints at random, in coordination: lock each joint, or drive it to a random target (section 5.1).
+//! Move the joints in coordination: lock each joint, or drive it to a random target (section 5.1) or along a sinusoid.
 //!
 //! Every joint is locked at the beginning. At the end of each epoch, each joint is drawn anew: with probability 1 − p it
 //! moves to a random target, uniform on [−π, π], under a linear controller; otherwise it is locked at its present angle.
 //! The paper leaves open what the controller is, its gains, and whether the two axes of a universal joint share one
-//! target.
+//! target. In a rhythmic movement, the target of a joint that moves is that of the oscillators, which never stop.
 
 use std::f64::consts::{PI, TAU};
 
 use nalgebra::Rotation3;
 use rand::RngExt;
 
+use super::rhythm::Oscillators;
 use super::settings::{AngleError, Controller, Motion, Targets};
 use super::world::{World, ball_error};
 use crate::numerics::rng::Stream;
@@ -22,13 +23,19 @@ pub struct Motor {
     freedoms: Vec<Freedom>,
     /// Targets of the angles, rad, of a joint that moves; `None` where it is locked.
     targets: Vec<Option<Vector3>>,
+    /// Where the targets come from that move on; `None` where they stay for an epoch.
+    oscillators: Option<Oscillators>,
+    /// Duration of a physics step, s.
+    step: f64,
 }
 
 impl Motor {
-    /// Motors of joints that are all locked, as a fresh [`World`] has them.
-    pub fn new(joints: &[Joint]) -> Self {
+    /// Motors of joints that are all locked, as a fresh [`World`] of steps of `step` s has them. Draws the rhythm, if there is one.
+    pub fn new(joints: &[Joint], motion: &Motion, step: f64, rng: &mut Stream) -> Self {
         let freedoms = joints.iter().map(|joint| joint.freedom).collect();
-        Self { freedoms, targets: vec![None; joints.len()] }
+        let draw = |rhythm| Oscillators::new(joints, rhythm, motion.targets, (motion.epoch, step), rng);
+        let oscillators = motion.rhythm().map(draw);
+        Self { freedoms, targets: vec![None; joints.len()], oscillators, step }
     }
 
     /// Draws for each joint whether it moves in the epoch that begins, and where to. Nothing is drawn for one that is fixed.
@@ -37,37 +44,51 @@ impl Motor {
             if *freedom == Freedom::Fixed {
                 continue;
             }
-            *target = rng
-                .random_bool(1.0 - motion.coordination)
-                .then(|| draw_target(freedom, motion.targets, &mut || rng.random_range(-PI..=PI)));
+            let moves = rng.random_bool(1.0 - motion.coordination);
+            *target = moves.then(|| match &self.oscillators {
+                Some(oscillators) => oscillators.target(joint),
+                None => draw_target(freedom, motion.targets, &mut || rng.random_range(-PI..=PI)),
+            });
             match target {
                 Some(_) => world.unlock(joint),
                 None => world.lock(joint),
             }
         }
+        if let Some(oscillators) = &mut self.oscillators {
+            oscillators.begin_epoch(rng);
+        }
     }
 
-    /// Drives each axis that moves towards its target for the next step.
-    pub fn apply(&self, world: &mut World, motion: &Motion) {
-        for (joint, (freedom, target)) in self.freedoms.iter().zip(&self.targets).enumerate() {
+    /// Drives each axis that moves towards its target for the next step, and as fast as a target that moves does.
+    pub fn apply(&mut self, world: &mut World, motion: &Motion) {
+        if let Some(oscillators) = &mut self.oscillators {
+            oscillators.advance();
+        }
+        for (joint, (freedom, target)) in self.freedoms.iter().zip(&mut self.targets).enumerate() {
             let Some(target) = target else { continue };
-            let angles = world.angles(joint);
-            let errors = match freedom {
-                Freedom::Ball => ball_error(*target, angles),
-                _ => [0, 1, 2].map(|axis| angle_error(target[axis], angles[axis], motion.error)),
+            let difference = |to: Vector3, from: Vector3| match freedom {
+                Freedom::Ball => ball_error(to, from),
+                _ => [0, 1, 2].map(|axis| angle_error(to[axis], from[axis], motion.error)),
+            };
+            let errors = difference(*target, world.angles(joint));
+            let wanted = match &self.oscillators {
+                None => [0.0; 3],
+                Some(oscillators) => {
+                    let next = oscillators.target(joint);
+                    difference(next, std::mem::replace(target, next)).map(|way| way / self.step)
+                }
             };
             match motion.controller {
                 Controller::Torque => {
                     let rates = world.rates(joint);
-                    let torque = |axis| motion.stiffness * errors[axis] - motion.damping * rates[axis];
+                    let torque = |axis| {
+                        motion.stiffness * errors[axis] + motion.damping * (wanted[axis] - rates[axis])
+                    };
                     world.apply_torques(joint, [0, 1, 2].map(torque));
                 }
                 Controller::Servo => {
-                    world.set_motor(
-                        joint,
-                        errors.map(|error| motion.servo_gain * error),
-                        motion.servo_torque,
-                    );
+                    let velocity = |axis| motion.servo_gain * errors[axis] + wanted[axis];
+                    world.set_motor(joint, [0, 1, 2].map(velocity), motion.servo_torque);
                 }
             }
         }
@@ -115,8 +136,8 @@ mod tests {
         let agent = scene.agent();
         let mut drawn = |targets| {
             scene.motion.targets = targets;
-            let mut motor = Motor::new(&agent.joints);
             let rng = &mut stream(1, 1, "motion", 0);
+            let mut motor = Motor::new(&agent.joints, &scene.motion, scene.physics.step, rng);
             motor.draw_targets(&mut World::new(&agent, &scene.physics), &scene.motion, rng);
             (motor.targets.iter().map(|target| target.expect("p = 0")).collect::<Vec<_>>(), rng.clone())
         };

@@ -1,4 +1,4 @@
-//! Move an agent at random for a given time and record its trajectory (section 5.1).
+//! Move an agent for a given time and record its trajectory (section 5.1).
 
 use serde::{Deserialize, Serialize};
 
@@ -92,7 +92,7 @@ pub fn simulate(
     let (parts, joints) = (agent.parts.len(), agent.joints.len());
     let (samples, steps_per_sample) = (physics.samples(interval), physics.steps_per_sample(interval));
     let mut world = World::new(agent, physics);
-    let mut motor = Motor::new(&agent.joints);
+    let mut motor = Motor::new(&agent.joints, motion, physics.step, rng);
     let mut trajectory = Trajectory {
         parts,
         joints,

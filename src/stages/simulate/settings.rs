@@ -1,8 +1,28 @@
 //! Settings of the movement, `[motion]`, and of the physics engine, `[physics]`.
 
+use std::f64::consts::PI;
+
 use serde::{Deserialize, Serialize};
 
 use crate::numerics::range::{Checked, check, count, gain, moderate, positive};
+
+/// How joints move that are not locked.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Movement {
+    /// To a random target in each epoch, as in the paper.
+    #[default]
+    Random,
+    /// To and fro by a [`Rhythm`], as a body that swims.
+    Rhythmic,
+}
+
+impl Movement {
+    /// Whether it is the paper's.
+    pub fn is_random(&self) -> bool {
+        *self == Self::Random
+    }
+}
 
 /// What the controller takes as the distance to the target.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -35,13 +55,13 @@ pub enum Controller {
     Servo,
 }
 
-/// Coordinated random movement and its controller (section 5.1).
+/// Coordinated random movement and its controller (section 5.1), or rhythmic movement in its place.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Motion {
     /// p, ratio of motor coordination: the probability that a joint stays locked for an epoch, in [0, 1].
     pub coordination: f64,
-    /// Physics steps of an epoch, after which each joint is drawn anew.
+    /// Physics steps of an epoch, after which each joint is drawn anew: whether it is locked.
     pub epoch: usize,
     /// Where a joint that moves goes to.
     pub targets: Targets,
@@ -57,9 +77,20 @@ pub struct Motion {
     pub servo_torque: f64,
     /// What the controller takes as the distance to the target.
     pub error: AngleError,
+    /// How joints move that are not locked. Files of a random movement do not name it, as before there was another.
+    #[serde(default, skip_serializing_if = "Movement::is_random")]
+    pub movement: Movement,
+    /// The rhythm of a rhythmic movement; settings that were read have none for a random one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rhythm: Option<Rhythm>,
 }
 
 impl Motion {
+    /// The rhythm of a rhythmic movement; `None` of a random one.
+    pub fn rhythm(&self) -> Option<&Rhythm> {
+        self.rhythm.as_ref().filter(|_| self.movement == Movement::Rhythmic)
+    }
+
     /// Checks the range of each setting.
     ///
     /// # Errors
@@ -73,7 +104,51 @@ impl Motion {
         moderate("motion.servo_gain", self.servo_gain)?;
         let torque = self.servo_torque;
         let range = "0.000001 to 1000000 (a servo without torque moves nothing)";
-        check("motion.servo_torque", torque, (1e-6..=1e6).contains(&torque), range)
+        check("motion.servo_torque", torque, (1e-6..=1e6).contains(&torque), range)?;
+        let complete = self.movement.is_random() || self.rhythm.is_some();
+        check("motion.rhythm", self.rhythm.as_ref(), complete, "given for a rhythmic movement")?;
+        self.rhythm.as_ref().map_or(Ok(()), Rhythm::check)
+    }
+}
+
+/// The rhythm of a rhythmic movement: each axis of each joint swings as a sinusoid.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Rhythm {
+    /// f₀, Hz: the median of the frequency f, which all axes share. Higher is faster, and travels farther.
+    pub frequency: f64,
+    /// Standard deviation of ln(f / f₀); with 0 the frequency never changes.
+    pub frequency_spread: f64,
+    /// Time, s, over which a deviation of ln(f / f₀) falls to 1/e of itself on average. Longer is slower.
+    pub frequency_time: f64,
+    /// Least amplitude of an axis, rad; amplitudes are uniform from it to the largest.
+    pub least_amplitude: f64,
+    /// Largest amplitude of an axis, rad.
+    pub largest_amplitude: f64,
+    /// How far the phase of a joint lies behind that of the joint above it, rad, on average: a wave has 2π / lag joints.
+    pub phase_lag: f64,
+    /// Largest difference from this lag, rad, drawn uniformly to both sides; with π, phases of neighbours have nothing in common.
+    pub phase_spread: f64,
+}
+
+impl Rhythm {
+    /// Checks the range of each setting.
+    ///
+    /// # Errors
+    /// The first setting that is outside its range.
+    pub fn check(&self) -> Checked {
+        let within = |key, value: f64, (low, high): (f64, f64), range| {
+            check(key, value, (low..=high).contains(&value), range)
+        };
+        within("motion.rhythm.frequency", self.frequency, (1e-4, 10.0), "0.0001 to 10 (Hz)")?;
+        within("motion.rhythm.frequency_spread", self.frequency_spread, (0.0, 1.0), "0 to 1")?;
+        moderate("motion.rhythm.frequency_time", self.frequency_time)?;
+        let largest = self.largest_amplitude;
+        within("motion.rhythm.largest_amplitude", largest, (0.0, PI), "0 to pi (rad)")?;
+        let range = "0 to motion.rhythm.largest_amplitude (rad)";
+        within("motion.rhythm.least_amplitude", self.least_amplitude, (0.0, largest), range)?;
+        within("motion.rhythm.phase_lag", self.phase_lag, (-PI, PI), "-pi to pi (rad)")?;
+        within("motion.rhythm.phase_spread", self.phase_spread, (0.0, PI), "0 to pi (rad)")
     }
 }
 

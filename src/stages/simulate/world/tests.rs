@@ -67,7 +67,7 @@ fn centre_of_mass(world: &World) -> Vector3 {
 /// Moves the body at random for `steps` steps; `each` sees the world after every step and may meddle.
 fn move_about(world: &mut World, scene: &Scene, steps: usize, mut each: impl FnMut(&mut World, &Motor)) {
     let mut rng = stream(3, 1, "motion", 0);
-    let mut motor = Motor::new(&scene.agent().joints);
+    let mut motor = Motor::new(&scene.agent().joints, &scene.motion, scene.physics.step, &mut rng);
     for step in 0..steps {
         if step % scene.motion.epoch == 0 {
             motor.draw_targets(world, &scene.motion, &mut rng);
@@ -347,8 +347,8 @@ fn lock_z_score(drawn: f64, claimed: f64) -> f64 {
     let (agent, mut scene) = agent_and_scene();
     scene.motion.coordination = drawn;
     let mut world = World::new(&agent, &scene.physics);
-    let mut motor = Motor::new(&agent.joints);
     let mut rng = stream(4, 1, "motion", 0);
+    let mut motor = Motor::new(&agent.joints, &scene.motion, scene.physics.step, &mut rng);
     let epochs = 20_000;
     let mut locked = 0;
     for _ in 0..epochs {
