@@ -9,7 +9,8 @@ use super::body::Body;
 use super::estimate::Estimate;
 use super::experiments::{Bodies, Compare, Multiverse, Reproduce, Search, Sensitivity};
 use super::results::{Plot, Verify};
-use super::stages::{Distance, Infer, Map, Simulate};
+use super::simulate::Simulate;
+use super::stages::{Distance, Infer, Map};
 use super::tree::Tree;
 use super::view::View;
 
