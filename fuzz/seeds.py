@@ -91,3 +91,12 @@ for robot in sorted((ROOT / "tests/data/import").glob("*")):
     put("body", robot.name, b"\0" + robot.read_bytes())
 for body in ("star", "human"):
     put("body", body, b"\1" + (ROOT / f"bodies/{body}.toml").read_bytes())
+for movement in sorted((ROOT / "tests/data/movement").glob("*.bvh")):
+    head, frames = movement.read_text().split("MOTION")
+    few = "\n".join(frames.splitlines()[3:7])
+    for kind in (0, 3, 5):
+        put("bvh", f"{movement.stem}-{kind}", bytes([kind]) + f"{head}MOTION\nFrames: 4\nFrame Time: 0.02\n{few}\n".encode())
+JOINT = "JOINT a\n{\nOFFSET 1 0 0\nCHANNELS 6 Xposition Yposition Zposition Xrotation Yrotation Zrotation\n"
+put("bvh", "travel", b"\1HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 1 Zrotation\n" + JOINT.encode() +
+    b"End Site\n{\nOFFSET 1 1 0\n}\n}\n}\nMOTION\nFrames: 3\nFrame Time: .1\n0 1 0 0 0 0 0\n9 1.5 0 0 9 0 0\n20 2 0 0 20 0 5\n")
+put("bvh", "rubbish", b"\0HIERARCHY\nROOT \xff\x1b{\nOFFSET nan 0 0\nCHANNELS 7 Wrotation\nEnd Site{}}}\nMOTION\nFrames: 99999999999\nFrame Time: 0\n")

@@ -12,7 +12,7 @@ fuzz_target!(|data: &[u8]| {
     let Some((kind, rest)) = data.split_first() else { return };
     if kind % 2 == 1 {
         if let Some(body) = accepted(read_body(&file("body.toml", rest))) {
-            assert_eq!(body.names.len(), body.agent.truth().parts());
+            assert!((1..=body.names.len()).contains(&body.agent.truth().parts()));
         }
         return;
     }

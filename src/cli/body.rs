@@ -3,15 +3,15 @@
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use anyhow::{Result, ensure};
+use anyhow::{Result, bail, ensure};
 use clap::{Args, Subcommand};
 
+use super::movement::skeleton_body;
+use super::options::metres;
 use super::output::say;
 use crate::files::body::{BodyFile, JointName, SkinEntry, write_body};
-use crate::files::import::{Imported, import};
-
-/// Sensors of each part of an imported body, if the user says nothing.
-const SENSORS: usize = 40;
+use crate::files::bvh::read_bvh;
+use crate::files::import::{Bones, Imported, SKIN, import};
 
 /// Makes files that describe a body, for simulate --body (not in the paper).
 #[derive(Args)]
@@ -25,21 +25,32 @@ enum Action {
     Import(Import),
 }
 
-/// Reads the description of a robot, MJCF (MuJoCo) or URDF (ROS), and writes it as a body.
+/// Reads the description of a robot, MJCF (MuJoCo) or URDF (ROS), or the skeleton of a recorded movement (.bvh), and writes it
+/// as a body.
 ///
 /// A part is a box, sphere, cylinder or capsule; the tree of parts is that of the bodies or links. Hinges, ball joints and
 /// fixed joints are imported, in the rest pose. Limits, friction and damping of joints, motors, contacts and inertias are
 /// ignored; masses become densities. See docs/reference.md.
+///
+/// Of a skeleton, each bone becomes a capsule from its joint to the next one, with a radius of 0.15 of its length. `simulate
+/// --movement` moves the body as it was recorded. Which axis points up does not matter for touch.
 #[derive(Args)]
 struct Import {
-    /// Description of a robot, as MJCF or URDF
+    /// Description of a robot, as MJCF or URDF, or a recorded movement, as BVH (a name that ends in .bvh)
+    #[arg(value_name = "FILE")]
     robot: PathBuf,
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..), conflicts_with = "per_area",
-          help = format!("Sensors on each part [default: {SENSORS}]"))]
+          help = format!("Sensors on each part [default: {}]", SKIN.sensors.unwrap_or_default()))]
     sensors_per_part: Option<u64>,
     /// Sensors per square metre of each part
     #[arg(long, value_name = "D")]
     per_area: Option<f64>,
+    /// BVH: length of a unit of the file, m, such as 0.01 or 0.0254 [default: guessed from the size of the skeleton]
+    #[arg(long, value_name = "METRES", value_parser = metres)]
+    scale: Option<f64>,
+    #[arg(long, value_name = "METRES", value_parser = metres,
+          help = format!("BVH: length of a bone from which on it carries skin, m [default: {}]", Bones::MIN_LENGTH))]
+    min_length: Option<f64>,
     /// File for the body (.toml)
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
@@ -59,14 +70,25 @@ impl Import {
         let (robot, out) = (&self.robot, &self.out);
         let skin = match (self.per_area, self.sensors_per_part) {
             (Some(density), _) => SkinEntry { sensors: None, per_area: Some(density) },
-            (None, count) => {
-                SkinEntry { sensors: Some(count.map_or(SENSORS, |count| count as usize)), per_area: None }
-            }
+            (None, Some(count)) => SkinEntry { sensors: Some(count as usize), per_area: None },
+            (None, None) => SKIN,
         };
         let same =
             |a: &Path, b: &Path| matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b);
         ensure!(!same(robot, out), "{}: is the input file; give another --out", out.display());
-        let Imported { file, notes } = import(robot, skin)?;
+        let Imported { file, notes } = if is_bvh(robot) {
+            let bones = Bones { scale: self.scale, min_length: self.min_length.unwrap_or(Bones::MIN_LENGTH) };
+            skeleton_body(robot, &read_bvh(robot)?, skin, &bones)?
+        } else {
+            let for_bones = self.scale.map(|_| "--scale").or(self.min_length.map(|_| "--min-length"));
+            if let Some(option) = for_bones {
+                bail!(
+                    "{}: {option} is for recorded movements, whose names end in .bvh; leave it out",
+                    robot.display()
+                );
+            }
+            import(robot, skin)?
+        };
         let name = robot.file_name().unwrap_or_default();
         write_body(out, &format!("Imported from {name:?}."), &file)?;
         say(format!("{} parts, in {}", file.parts.len(), out.display()))?;
@@ -74,6 +96,11 @@ impl Import {
         notes.into_iter().try_for_each(|note| say(format!("note: {note}")))?;
         Ok(ExitCode::SUCCESS)
     }
+}
+
+/// Whether a file is a recorded movement, by its name.
+fn is_bvh(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("bvh"))
 }
 
 /// How many joints of each kind a body has.

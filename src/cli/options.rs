@@ -10,7 +10,7 @@ use serde::de::DeserializeOwned;
 
 use crate::analysis::published::Experiment;
 use crate::files::tables::read_truth;
-use crate::settings::{Base, Settings};
+use crate::settings::{Base, Settings, read_toml};
 use crate::stages::body_map::{MapMethod, MapOf};
 use crate::stages::quantise::Scheme;
 use crate::stages::schema::{EdgeWeight, Keep, Model, Sampler, Start};
@@ -47,6 +47,13 @@ impl SettingsFile {
     /// The settings, of a quick run if `quick`.
     pub fn load(&self, quick: bool) -> Result<Settings> {
         Ok(Settings::load(quick, self.settings.as_deref())?)
+    }
+
+    /// Whether the user's file has a setting.
+    pub fn has(&self, section: &str, key: &str) -> Result<bool> {
+        let Some(path) = &self.settings else { return Ok(false) };
+        let table: toml::Table = read_toml(path)?.parse()?;
+        Ok(table.get(section).and_then(toml::Value::as_table).is_some_and(|own| own.contains_key(key)))
     }
 }
 
@@ -227,6 +234,12 @@ impl Choice for Experiment {
 pub fn seconds(text: &str) -> Result<f64, String> {
     let seconds: f64 = text.parse().map_err(|_| "it must be a number of seconds".to_owned())?;
     if seconds.is_finite() && seconds > 0.0 { Ok(seconds) } else { Err("it must be above 0".to_owned()) }
+}
+
+/// A length above 0, m.
+pub fn metres(text: &str) -> Result<f64, String> {
+    let metres: f64 = text.parse().map_err(|_| "it must be a number of metres".to_owned())?;
+    if (1e-6..=1e6).contains(&metres) { Ok(metres) } else { Err("it must be 0.000001 to 1000000".to_owned()) }
 }
 
 #[cfg(test)]

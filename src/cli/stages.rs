@@ -1,11 +1,10 @@
-//! The subcommands of the stages: simulate, distance, map, infer.
+//! The subcommands of the stages after simulate: distance, map, infer.
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Context, Result, ensure};
 use clap::Args;
-use serde::Serialize;
 
 use super::options::{SettingsAndSeed, SettingsFile, TruthFiles, choice, paper, set, with_default};
 use super::output::say;
@@ -13,86 +12,15 @@ use super::posterior;
 use crate::analysis::consensus::named_after;
 use crate::analysis::posterior::Posterior;
 use crate::analysis::statistics::{Estimate, mean, rate};
-use crate::files::body::{NamedBody, read_body};
-use crate::files::moved_body::MovedBody;
 use crate::files::{npy, prepare_folder, tables};
-use crate::numerics::rng::stream;
 use crate::pipeline::map_stream;
 use crate::settings::{Base, Settings};
-use crate::stages::agent::Agent;
 use crate::stages::body_map::{BodyMap, BodyMaps, ClassicalScaling, Improvement, MapMethod, MapOf, scaled};
 use crate::stages::distance::information_metric;
 use crate::stages::evaluate::{Score, parts, score};
 use crate::stages::quantise::{Scheme, quantise};
 use crate::stages::schema::{EdgeWeight, Keep, Model, Sample, Sampler, Start, best, infer};
-use crate::stages::sense::sense;
-use crate::stages::simulate::simulate;
 use crate::tasks::progress::progress;
-
-/// Stages 1 and 2: simulates a body that moves at random in a fluid, and records the pressures on its sensors.
-///
-/// With the setting motion.movement = "rhythmic", the body swims instead: its joints swing as sinusoids that are out of phase.
-/// The setting motion.coordination is p, how probably a joint is locked for an epoch, of both movements; a body that shall travel
-/// needs p = 0 (--settings reproduce/rhythmic.toml).
-///
-/// Writes into DIR: tactile.npy (float32, T x M, Pa), labels.csv (sensor,part), tree.csv (child,parent) and
-/// joint-angles.csv (time_s, then the angles of each joint in rad; T + 1 rows); for `view` also solids.csv, sensors.csv and
-/// poses.npy (float32, T + 1 x 7 for each solid); with --body also names.csv (part,name). T is the number of
-/// samples in time, M the number of sensors.
-#[derive(Args)]
-pub struct Simulate {
-    #[command(flatten)]
-    common: SettingsAndSeed,
-    /// Body to simulate, instead of the one in the settings: a .toml file, such as those in the folder bodies
-    #[arg(long, value_name = "FILE")]
-    body: Option<PathBuf>,
-    /// Folder to write to
-    #[arg(long, value_name = "DIR")]
-    out: PathBuf,
-}
-
-#[derive(Serialize)]
-struct NameRow {
-    part: usize,
-    name: String,
-}
-
-impl Simulate {
-    /// Runs the subcommand.
-    pub fn run(self) -> Result<ExitCode> {
-        let (settings, out) = (self.common.load(false)?, &self.out);
-        let Settings { agent, skin, motion, physics, sense: tactile_sense, experiment, .. } = &settings;
-        let body = self.body.as_deref().map(read_body).transpose()?;
-        let names = body.as_ref().map(NamedBody::rigid_names);
-        let agent = body.map_or_else(|| Agent::new(agent, skin), |body| body.agent);
-        settings.check_times(agent.sites.len())?;
-        prepare_folder(out)?;
-        let interval = tactile_sense.interval;
-        let bar = progress(physics.samples(interval) as u64 + 1, "simulate".to_owned());
-        let mut rng = stream(experiment.seed, 1, "motion", 0);
-        let trajectory = simulate(&agent, motion, physics, interval, &mut rng, &|| bar.inc(1))?;
-        bar.finish_and_clear();
-        tables::write_truth(&out.join("labels.csv"), &out.join("tree.csv"), &agent.truth())?;
-        if let Some(names) = names {
-            let rows = names.into_iter().enumerate().map(|(part, name)| NameRow { part, name });
-            tables::write_rows(&out.join("names.csv"), rows)?;
-        }
-        tables::write_joint_angles(&out.join("joint-angles.csv"), &agent.joints, &trajectory, interval)?;
-        MovedBody::of(&agent, &trajectory).write(out, &agent.rigid_bodies())?;
-        let tactile = sense(&agent, &trajectory, tactile_sense);
-        npy::write_tactile(&out.join("tactile.npy"), &tactile)?;
-        say(format!(
-            "{} samples of {} sensors on {} parts, seed {}, in {}",
-            tactile.samples,
-            tactile.sensors(),
-            agent.tree().len() + 1,
-            experiment.seed,
-            out.display()
-        ))?;
-        say(trajectory.resolution.in_words("this movement"))?;
-        Ok(ExitCode::SUCCESS)
-    }
-}
 
 /// Stages 3 and 4: quantises pressures into symbols, and computes the information metric between sensors.
 ///

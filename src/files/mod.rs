@@ -1,6 +1,7 @@
 //! Read and write files that NumPy and a spreadsheet open, and the folders of finished runs.
 
 pub mod body;
+pub mod bvh;
 pub(crate) mod checkpoint;
 mod error;
 mod hash;

@@ -7,8 +7,8 @@ use std::collections::{HashMap, HashSet};
 use nalgebra::{Isometry3, Point3, Translation3, Vector3};
 use roxmltree::Node;
 
-use self::defaults::{Defaults, z_to};
-use super::placed::{Link, Solid, Turn, weigh};
+use self::defaults::Defaults;
+use super::placed::{Link, Solid, Turn, weigh, z_to};
 use super::xml::{Element, Wrong};
 use crate::stages::agent::Shape;
 

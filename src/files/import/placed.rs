@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use nalgebra::{Isometry3, Vector3 as Column};
+use nalgebra::{Isometry3, UnitQuaternion, UnitVector3, Vector3 as Column};
 
 use crate::files::body::{PartEntry, ShapeName};
 use crate::stages::agent::{Shape, Vector3};
@@ -68,6 +68,13 @@ pub fn weigh(solids: &mut [Solid], mass: f64) {
     let volume: f64 = solids.iter().map(|solid| volume(&solid.shape)).sum();
     let density = (mass != 0.0 && volume > 0.0).then(|| mass / volume);
     solids.iter_mut().for_each(|solid| solid.density = density);
+}
+
+/// The least rotation that takes z to a direction; about x if it is the opposite one.
+pub fn z_to(direction: &UnitVector3<f64>) -> UnitQuaternion<f64> {
+    let axis = Column::z().cross(direction);
+    let axis = UnitVector3::try_new(axis, 1e-10).unwrap_or(Column::x_axis());
+    UnitQuaternion::from_axis_angle(&axis, direction.xy().norm().atan2(direction.z))
 }
 
 /// Without what rounding added on the way: 0.3 for 0.30000000000000004.

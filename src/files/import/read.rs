@@ -11,6 +11,9 @@ use crate::files::body::{BodyFile, SkinEntry};
 use crate::files::error::FileError;
 use crate::files::whole::read_text;
 
+/// Skin of each part of an imported body, if the user says nothing.
+pub const SKIN: SkinEntry = SkinEntry { sensors: Some(40), per_area: None };
+
 /// A body that was read from the description of a robot.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Imported {

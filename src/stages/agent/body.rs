@@ -124,11 +124,25 @@ impl Agent {
         self.sites.iter().map(|site| bodies[site.part]).collect()
     }
 
-    /// The true tree as (child, parent) pairs; parts that are fixed to each other are one.
+    /// The true tree as (child, parent) pairs; parts that are fixed to each other are one. A part without sensors is none: what
+    /// it carries is joined to what carries it, and on the root to the first of them.
     pub fn tree(&self) -> Vec<(usize, usize)> {
         let bodies = self.rigid_bodies();
-        let moving = self.joints.iter().filter(|joint| joint.freedom != Freedom::Fixed);
-        moving.map(|joint| (bodies[joint.child], bodies[joint.parent])).collect()
+        let mut is_felt = vec![false; bodies.len()];
+        self.sites.iter().for_each(|site| is_felt[bodies[site.part]] = true);
+        // What stands for each rigid body; nothing yet for those without sensors from the root on.
+        let mut stands: Vec<Option<usize>> =
+            (0..bodies.len()).map(|body| is_felt[body].then_some(body)).collect();
+        let (mut first, mut tree) = (None, Vec::new());
+        for joint in self.joints.iter().filter(|joint| joint.freedom != Freedom::Fixed) {
+            let (child, parent) = (bodies[joint.child], stands[bodies[joint.parent]].or(first));
+            match parent {
+                Some(parent) if is_felt[child] => tree.push((child, parent)),
+                None if is_felt[child] => first = Some(child),
+                parent => stands[child] = parent,
+            }
+        }
+        tree
     }
 
     /// The true part of each sensor and the true tree.
@@ -163,6 +177,38 @@ mod tests {
         };
         assert_eq!(agent.labels(), [0, 1, 1, 2, 0]);
         assert_eq!(agent.tree(), [(1, 0), (2, 1)]);
+    }
+
+    #[test]
+    fn a_part_without_sensors_is_none_in_truth() {
+        // A root that carries 1 and 2, of which 1 carries 3 and 2 carries 4, and 5 on 4.
+        let tree = |felt: &[usize]| {
+            let part = Part {
+                shape: Shape::Sphere { radius: 0.1 },
+                centre: [0.0; 3],
+                rotation: across([0.0, 0.0, 1.0]),
+                density: 1000.0,
+            };
+            let joint = |(at, parent): (usize, &usize)| Joint {
+                parent: *parent,
+                child: at + 1,
+                anchor: [0.0; 3],
+                freedom: Freedom::Ball,
+            };
+            let site = |&part: &usize| Site { part, position: [0.1, 0.0, 0.0], normal: [1.0, 0.0, 0.0] };
+            let agent = Agent {
+                parts: vec![part; 6],
+                joints: [0, 0, 1, 2, 4].iter().enumerate().map(joint).collect(),
+                sites: felt.iter().map(site).collect(),
+            };
+            agent.tree()
+        };
+        assert_eq!(tree(&[0, 1, 2, 3, 4, 5]), [(1, 0), (2, 0), (3, 1), (4, 2), (5, 4)]);
+        assert_eq!(tree(&[0, 3, 4]), [(3, 0), (4, 0)]);
+        assert_eq!(tree(&[0, 1, 5]), [(1, 0), (5, 0)]);
+        assert_eq!(tree(&[3, 4, 5]), [(4, 3), (5, 4)]);
+        assert_eq!(tree(&[2, 3, 5]), [(3, 2), (5, 2)]);
+        assert_eq!(tree(&[5]), []);
     }
 
     #[test]

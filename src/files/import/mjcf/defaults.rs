@@ -2,9 +2,10 @@
 
 use std::collections::HashMap;
 
-use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion, UnitVector3, Vector3};
+use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion, Vector3};
 use roxmltree::Node;
 
+use crate::files::import::placed::z_to;
 use crate::files::import::xml::{Element, Wrong, line};
 
 /// Attributes that turn a frame, of which an element has one.
@@ -136,11 +137,4 @@ impl<'a> Defaults<'a> {
             }
         })
     }
-}
-
-/// The least rotation that takes z to a direction; about x if it is the opposite one.
-pub fn z_to(direction: &UnitVector3<f64>) -> UnitQuaternion<f64> {
-    let axis = Vector3::z().cross(direction);
-    let axis = UnitVector3::try_new(axis, 1e-10).unwrap_or(Vector3::x_axis());
-    UnitQuaternion::from_axis_angle(&axis, direction.xy().norm().atan2(direction.z))
 }

@@ -1,0 +1,95 @@
+//! Guess how long a unit of a recording is: the one that makes the skeleton nearest to a person.
+
+use nalgebra::Vector3 as Column;
+
+use crate::stages::simulate::recorded::RecordedMovement;
+
+/// The longest way along the bones of a grown person, m: from the tip of a hand to that of a foot. It is 2.2 to 2.4 m in public
+/// recordings, and does not depend on the pose at rest.
+const PERSON: f64 = 2.4;
+
+/// Units in m, and what messages call them.
+const UNITS: [(f64, &str); 5] = [
+    (1.0, "metres"),
+    (0.0254 / 0.45, "units of 0.05644 m (inches / 0.45, as in conversions of the CMU database)"),
+    (0.0254, "inches"),
+    (0.01, "centimetres"),
+    (0.001, "millimetres"),
+];
+
+/// The unit in which a longest way is nearest to that of a person, by ratio.
+pub fn unit(way: f64) -> (f64, &'static str) {
+    let off = |scale: f64| (way * scale / PERSON).ln().abs();
+    UNITS
+        .into_iter()
+        .reduce(|best, next| if off(next.0) < off(best.0) { next } else { best })
+        .unwrap_or(UNITS[0])
+}
+
+/// The longest way along the bones of a skeleton, in its unit.
+pub fn longest_way(movement: &RecordedMovement) -> f64 {
+    let joints = movement.joints();
+    // From each joint, the longest way up.
+    let mut up = vec![0.0_f64; joints.len()];
+    let mut longest = 0.0_f64;
+    let mut add = |up: &mut f64, branch: f64| {
+        longest = longest.max(*up + branch);
+        *up = up.max(branch);
+    };
+    for (at, joint) in joints.iter().enumerate().rev() {
+        for end in &joint.ends {
+            add(&mut up[at], Column::from(*end).norm());
+        }
+        if let (Some(parent), Some(bone)) = (joint.parent, movement.bone(at)) {
+            let branch = up[at] + bone.norm();
+            add(&mut up[parent], branch);
+        }
+    }
+    longest
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::stages::simulate::recorded::{Channel, RecordedJoint};
+
+    #[test]
+    fn the_longest_way_goes_over_a_fork_and_ends_at_what_travels() {
+        let joint = |parent, offset: f64, channel, ends: &[f64]| RecordedJoint {
+            name: String::new(),
+            parent,
+            offset: [0.0, offset, 0.0],
+            channels: vec![channel],
+            ends: ends.iter().map(|end| [*end, 0.0, 0.0]).collect(),
+        };
+        let (turn, place) = (Channel::Rotation(0), Channel::Position(1));
+        let joints = vec![
+            joint(None, 50.0, place, &[]),
+            joint(Some(0), 3.0, turn, &[4.0, 1.0]),
+            joint(Some(0), 2.0, turn, &[]),
+            joint(Some(2), -8.0, turn, &[1.0]),
+            joint(Some(1), 100.0, place, &[30.0]),
+        ];
+        let movement =
+            RecordedMovement::new(joints, 1.0, vec![0.0, 0.0, 0.0, 0.0, 100.0, 9.0, 0.0, 0.0, 0.0, 150.0]);
+        // From the end of 4 over the root to that of 1.
+        assert_eq!(longest_way(&movement), 30.0_f64.max(4.0 + 3.0 + 2.0 + 8.0 + 1.0));
+    }
+
+    #[test]
+    fn a_person_is_told_in_every_unit_and_an_animal_stays_near_its_size() {
+        for (way, scale) in [
+            (2.2, 1.0),
+            (1.7, 1.0),
+            (6.1, 1.0),
+            (39.1, 0.0254 / 0.45),
+            (41.6, 0.0254 / 0.45),
+            (94.0, 0.0254),
+            (261.0, 0.01),
+            (2400.0, 0.001),
+        ] {
+            assert!((unit(way).0 - scale).abs() < 1e-12, "{way}: {:?}", unit(way));
+        }
+        assert_eq!(unit(0.0), UNITS[0]);
+    }
+}

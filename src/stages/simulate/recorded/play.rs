@@ -1,0 +1,139 @@
+//! Move a body as a skeleton was recorded to move.
+
+use std::f64::consts::TAU;
+use std::ops::Range;
+
+use nalgebra::{Isometry3, Vector3 as Column};
+use rayon::prelude::*;
+
+use super::super::movement::{Resolution, Trajectory};
+use super::super::world::Pose;
+use super::angles::angles;
+use super::attach::Attached;
+use super::between::local_at;
+use super::skeleton::RecordedMovement;
+use crate::stages::agent::{Agent, Joint, Part, Vector3};
+
+/// Largest rotation, rad, and distance, m, of a part on another that counts as none: what rounding leaves.
+const STILL: (f64, f64) = (1e-4, 1e-5);
+
+/// Where all joints are at a frame, in the unit of the recording.
+pub fn frame_poses(movement: &RecordedMovement, frame: usize) -> Vec<Isometry3<f64>> {
+    movement.placed(|joint| movement.local(joint, frame))
+}
+
+/// Where the centre of a part is in the world, m, of where its joint is.
+pub fn centre(agent: &Agent, attached: &Attached, part: usize, joint: &Isometry3<f64>) -> Column<f64> {
+    let arm = Column::from(agent.parts[part].centre) - attached.rest[part];
+    attached.scale * joint.translation.vector + joint.rotation * arm
+}
+
+/// T, the number of times `interval` (s) apart after the first of so many frames.
+pub fn samples(movement: &RecordedMovement, frames: &Range<usize>, interval: f64) -> usize {
+    ((frames.len() - 1) as f64 / (interval / movement.frame_time()) + 1e-6) as usize
+}
+
+/// The movement of `agent` over `frames` of a recording, sampled every `interval` (s) from the first of them on: the initial pose
+/// and `samples` more.
+///
+/// The [`Resolution`] says how far joints come apart, which are no single points in the recording, and the largest turn of a part
+/// between two samples.
+pub fn play(
+    agent: &Agent,
+    attached: &Attached,
+    movement: &RecordedMovement,
+    frames: &Range<usize>,
+    interval: f64,
+    samples: usize,
+) -> Trajectory {
+    // 1 exactly, if it is the frame time: then all samples are frames.
+    let step = interval / movement.frame_time();
+    let sampled: Vec<(Vec<Pose>, Vec<Vector3>, f64)> = (0..=samples)
+        .into_par_iter()
+        .map(|sample| {
+            let time = frames.start as f64 + sample as f64 * step;
+            let placed = movement.placed(|joint| local_at(movement, frames, joint, time));
+            let separation = separation(agent, attached, &placed);
+            (poses(agent, attached, &placed), joint_angles(agent, attached, &placed), separation)
+        })
+        .collect();
+    let mut trajectory =
+        Trajectory { parts: agent.parts.len(), joints: agent.joints.len(), ..Trajectory::default() };
+    for (poses, angles, anchor_separation) in sampled {
+        let before = trajectory.poses.len().checked_sub(poses.len()).map(|at| &trajectory.poses[at..]);
+        let pairs = before.into_iter().flatten().zip(&poses);
+        let turn = pairs.map(|(before, now)| angle(before, now) / TAU).fold(0.0, f64::max);
+        trajectory.resolution = trajectory.resolution.worse(Resolution { anchor_separation, turn });
+        trajectory.poses.extend(poses);
+        trajectory.angles.extend(angles);
+    }
+    trajectory
+}
+
+fn poses(agent: &Agent, attached: &Attached, placed: &[Isometry3<f64>]) -> Vec<Pose> {
+    let pose = |(at, part): (usize, &Part)| {
+        let joint = &placed[attached.joints[at]];
+        let turn = joint.rotation.to_rotation_matrix();
+        let rotation = [0, 1, 2].map(|row| {
+            [0, 1, 2].map(|column| (0..3).map(|k| turn[(row, k)] * part.rotation[k][column]).sum())
+        });
+        Pose { position: centre(agent, attached, at, joint).into(), rotation }
+    };
+    agent.parts.iter().enumerate().map(pose).collect()
+}
+
+fn joint_angles(agent: &Agent, attached: &Attached, placed: &[Isometry3<f64>]) -> Vec<Vector3> {
+    let turned = |part: usize| placed[attached.joints[part]].rotation;
+    let angles = |joint: &Joint| angles(&joint.freedom, turned(joint.parent).inverse() * turned(joint.child));
+    agent.joints.iter().map(angles).collect()
+}
+
+/// Largest distance between the two places that a joint's parts have its anchor at, m.
+fn separation(agent: &Agent, attached: &Attached, placed: &[Isometry3<f64>]) -> f64 {
+    let apart = |joint: &Joint| {
+        let on = |part: usize| {
+            let own = &placed[attached.joints[part]];
+            let arm = Column::from(joint.anchor) - attached.rest[part];
+            attached.scale * own.translation.vector + own.rotation * arm
+        };
+        (on(joint.parent) - on(joint.child)).norm()
+    };
+    agent.joints.iter().map(apart).fold(0.0, f64::max)
+}
+
+/// Whether the parts of each joint never move against each other in a trajectory.
+pub fn unmoved(agent: &Agent, trajectory: &Trajectory) -> Vec<bool> {
+    let all = || trajectory.poses.chunks(trajectory.parts);
+    let is_still = |joint: &Joint| {
+        let mut relative = all().map(|poses| relative(&poses[joint.parent], &poses[joint.child]));
+        let first = relative.next();
+        first.is_none_or(|first| {
+            relative.all(|now| {
+                let way = Column::from(now.position) - Column::from(first.position);
+                angle(&first, &now) <= STILL.0 && way.norm() <= STILL.1
+            })
+        })
+    };
+    agent.joints.iter().map(is_still).collect()
+}
+
+/// The pose of a part in the frame of another.
+fn relative(on: &Pose, part: &Pose) -> Pose {
+    let back = |v: Vector3| [0, 1, 2].map(|i| (0..3).map(|k| on.rotation[k][i] * v[k]).sum::<f64>());
+    let columns = [0, 1, 2].map(|column| back(part.rotation.map(|row| row[column])));
+    Pose {
+        position: back([0, 1, 2].map(|k| part.position[k] - on.position[k])),
+        rotation: [0, 1, 2].map(|row| columns.map(|column| column[row])),
+    }
+}
+
+/// The angle between the rotations of two poses, rad. The squares of the differences of two rotation matrices sum up to 8 times
+/// the squared sine of half of it.
+fn angle(a: &Pose, b: &Pose) -> f64 {
+    let numbers = |pose: &Pose| pose.rotation.into_iter().flatten();
+    let squares: f64 = numbers(a).zip(numbers(b)).map(|(a, b)| (a - b) * (a - b)).sum();
+    2.0 * libm::asin((squares / 8.0).sqrt().min(1.0))
+}
+
+#[cfg(test)]
+mod tests;
