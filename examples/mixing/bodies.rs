@@ -60,7 +60,7 @@ struct Condition {
 }
 
 /// Runs the study, writes its tables, and returns its section of the page.
-pub fn study(folder: &Path) -> Result<String, Box<dyn Error>> {
+pub(crate) fn study(folder: &Path) -> Result<String, Box<dyn Error>> {
     let mut settings = no_fluid();
     (settings.schema, settings.experiment.seed, settings.map.of) = (split_merge(), SEED, MapOf::Distances);
     let mut conditions: Vec<Condition> = DIMENSIONS

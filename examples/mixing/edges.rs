@@ -59,7 +59,7 @@ struct Pair {
 }
 
 /// Runs the study, writes its table and its picture, and returns its section of the page.
-pub fn study(folder: &Path) -> Result<String, Box<dyn Error>> {
+pub(crate) fn study(folder: &Path) -> Result<String, Box<dyn Error>> {
     let mut lines = vec![
         "## Bodies drawn from the model\n".to_owned(),
         format!(
@@ -152,7 +152,7 @@ fn draw_body(dims: usize, rng: &mut Stream) -> Result<Drawn, Rounding> {
 }
 
 /// The weights of all trees over some Gaussians.
-pub fn graph(gaussians: &[Gaussian]) -> Result<WeightedGraph, Rounding> {
+pub(crate) fn graph(gaussians: &[Gaussian]) -> Result<WeightedGraph, Rounding> {
     let moments: Vec<_> = gaussians.iter().map(Gaussian::moments).collect();
     sampler::graph(&moments.iter().collect::<Vec<_>>())
 }

@@ -6,11 +6,11 @@ use std::path::Path;
 use plotters::prelude::*;
 
 /// Okabe and Ito's blue and orange.
-pub const BLUE: RGBColor = RGBColor(0, 114, 178);
-pub const ORANGE: RGBColor = RGBColor(213, 94, 0);
+pub(crate) const BLUE: RGBColor = RGBColor(0, 114, 178);
+pub(crate) const ORANGE: RGBColor = RGBColor(213, 94, 0);
 
 /// Pairs of parts of like probability.
-pub struct Bin {
+pub(crate) struct Bin {
     /// Their mean probability.
     pub predicted: f64,
     /// How many of them are joined, as a share.
@@ -22,7 +22,7 @@ pub struct Bin {
 }
 
 /// How often an edge is there against its probability, a panel for each set of bins.
-pub fn reliability(path: &Path, panels: &[(String, Vec<Bin>)]) -> Result<(), Box<dyn Error>> {
+pub(crate) fn reliability(path: &Path, panels: &[(String, Vec<Bin>)]) -> Result<(), Box<dyn Error>> {
     let area = SVGBackend::new(path, (900, 430)).into_drawing_area();
     area.fill(&WHITE)?;
     for (panel, (title, bins)) in area.split_evenly((1, panels.len())).iter().zip(panels) {
@@ -55,7 +55,7 @@ pub fn reliability(path: &Path, panels: &[(String, Vec<Bin>)]) -> Result<(), Box
 }
 
 /// A line over seconds.
-pub struct Line {
+pub(crate) struct Line {
     pub colour: RGBColor,
     pub name: &'static str,
     /// Whether it is a mean, and not a single chain.
@@ -64,14 +64,14 @@ pub struct Line {
 }
 
 /// A panel: its title, the name of its vertical axis, and its lines.
-pub struct Panel {
+pub(crate) struct Panel {
     pub title: String,
     pub axis: &'static str,
     pub lines: Vec<Line>,
 }
 
 /// Lines over seconds on a logarithmic axis; `rows` of panels, one below the other.
-pub fn traces(path: &Path, rows: &[Vec<Panel>]) -> Result<(), Box<dyn Error>> {
+pub(crate) fn traces(path: &Path, rows: &[Vec<Panel>]) -> Result<(), Box<dyn Error>> {
     let columns = rows.first().map_or(1, Vec::len);
     let area = SVGBackend::new(path, (300 * columns as u32, 260 * rows.len() as u32)).into_drawing_area();
     area.fill(&WHITE)?;

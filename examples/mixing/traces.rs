@@ -66,7 +66,7 @@ struct Timing {
 }
 
 /// Runs the study, writes its tables and its picture, and returns its section of the page.
-pub fn study(folder: &Path) -> Result<String, Box<dyn Error>> {
+pub(crate) fn study(folder: &Path) -> Result<String, Box<dyn Error>> {
     let (mut states, mut timings) = (Vec::new(), Vec::new());
     for (name, map) in maps()? {
         let own = chains(name, &map)?;

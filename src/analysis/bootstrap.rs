@@ -24,7 +24,7 @@ fn resample_clusters(sizes: &[usize], rng: &mut impl Rng) -> Vec<(usize, usize)>
 }
 
 /// The statistic of each of `count` resamples of clusters and of their members, ascending; see [`resample_clusters`].
-pub fn of_clusters(
+pub(crate) fn of_clusters(
     sizes: &[usize],
     count: usize,
     rng: &mut impl Rng,
@@ -37,20 +37,20 @@ pub fn of_clusters(
 
 /// Resamples of simulations, the same for every estimate of an experiment.
 #[derive(Debug, Clone)]
-pub struct Resamples {
+pub(crate) struct Resamples {
     /// The simulations that were drawn, counted from 0; a row a resample.
     drawn: Vec<Vec<usize>>,
 }
 
 impl Resamples {
     /// `count` resamples of so many simulations; none of one simulation, which is the same however often it is drawn.
-    pub fn new(simulations: usize, count: usize, rng: &mut impl Rng) -> Self {
+    pub(crate) fn new(simulations: usize, count: usize, rng: &mut impl Rng) -> Self {
         let count = if simulations > 1 { count } else { 0 };
         Self { drawn: (0..count).map(|_| resample(simulations, rng)).collect() }
     }
 
     /// The statistic of each resample, ascending, without those that have none.
-    pub fn values(&self, statistic: impl Fn(&[usize]) -> Option<f64> + Sync) -> Vec<f64> {
+    pub(crate) fn values(&self, statistic: impl Fn(&[usize]) -> Option<f64> + Sync) -> Vec<f64> {
         let mut values: Vec<f64> = self.drawn.par_iter().filter_map(|drawn| statistic(drawn)).collect();
         values.sort_by(f64::total_cmp);
         values
@@ -65,7 +65,7 @@ impl Resamples {
     ///
     /// # Panics
     /// If there are not as many groups as simulations.
-    pub fn clustered(&self, pooled: Estimate, groups: &[(f64, usize)]) -> Estimate {
+    pub(crate) fn clustered(&self, pooled: Estimate, groups: &[(f64, usize)]) -> Estimate {
         let values: Vec<f64> =
             groups.iter().filter(|group| group.1 > 0).map(|group| group.0 / group.1 as f64).collect();
         let simulations = values.len();
@@ -90,7 +90,7 @@ impl Resamples {
     /// Simulations are drawn in pairs, since they share what the two have in common: the interval is the expanded
     /// percentile interval of the differences. It is never narrower than that of two estimates whose observations are all
     /// independent, by Zou & Donner (2008) from the intervals given. `None` if either has no value.
-    pub fn difference(
+    pub(crate) fn difference(
         &self,
         (first, groups): (Estimate, &[(f64, usize)]),
         (second, others): (Estimate, &[(f64, usize)]),
@@ -126,7 +126,7 @@ fn mean_of(drawn: &[usize], groups: &[(f64, usize)]) -> Option<f64> {
 
 /// The expanded percentile interval (Hesterberg 2015) of the `sorted` values of resamples of so many simulations, more
 /// than one.
-pub fn percentile_interval(sorted: &[f64], simulations: usize) -> (f64, f64) {
+pub(crate) fn percentile_interval(sorted: &[f64], simulations: usize) -> (f64, f64) {
     let widened = (simulations as f64 / (simulations - 1) as f64).sqrt() * student(simulations);
     let tail = Normal::standard().cdf(-widened);
     (quantile(sorted, tail), quantile(sorted, 1.0 - tail))

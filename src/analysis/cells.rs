@@ -38,7 +38,7 @@ impl From<&Estimate> for EstimateCells {
 
 /// Reads a cell that may be empty. The csv crate infers the type of a cell in a flattened struct, and does not take
 /// an empty one for `None`.
-pub fn number_or_empty<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>, D::Error> {
+pub(crate) fn number_or_empty<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<f64>, D::Error> {
     struct Cell;
 
     impl Visitor<'_> for Cell {

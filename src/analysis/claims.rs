@@ -38,7 +38,7 @@ impl Verdict {
 
 /// A claim, its worst value, and its verdict.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Judged {
+pub(crate) struct Judged {
     /// The claim.
     pub claim: Claim,
     /// The value that lies farthest towards the outside of the range.
@@ -56,7 +56,7 @@ pub struct Judged {
 }
 
 /// Judges the claims of one experiment.
-pub fn judge(experiment: Experiment, evidence: &Evidence) -> Vec<Judged> {
+pub(crate) fn judge(experiment: Experiment, evidence: &Evidence) -> Vec<Judged> {
     let reading = evidence.reading;
     let best = Evidence { conditions: evidence.conditions.best(), baselines: Vec::new(), reading };
     let claims = claims().into_iter().filter(|claim| claim.experiments.contains(&experiment));
@@ -64,7 +64,7 @@ pub fn judge(experiment: Experiment, evidence: &Evidence) -> Vec<Judged> {
 }
 
 /// The claim that the paper is cited for.
-pub fn headline(experiment: Experiment, evidence: &Evidence) -> Judged {
+pub(crate) fn headline(experiment: Experiment, evidence: &Evidence) -> Judged {
     let mut judged = judge(experiment, evidence).into_iter();
     judged.find(|judged| judged.claim.id == HEADLINE).expect("both experiments have it")
 }
@@ -80,12 +80,12 @@ fn judge_one(claim: Claim, evidence: &Evidence, best: &Evidence) -> Judged {
 
 /// Of all values that a claim is about, the one that lies farthest towards the outside of its range, where it was found,
 /// and the verdict.
-pub fn judge_claim(claim: &Claim, evidence: &Evidence) -> (Estimate, String, Verdict) {
+pub(crate) fn judge_claim(claim: &Claim, evidence: &Evidence) -> (Estimate, String, Verdict) {
     worst(claim, &measure(&claim.measure, evidence))
 }
 
 /// How far a value lies outside the range of a claim; negative inside.
-pub fn outside(claim: &Claim, value: f64) -> f64 {
+pub(crate) fn outside(claim: &Claim, value: f64) -> f64 {
     let accept = claim.accept.unwrap_or_default();
     // A bound at the end of a share's scale excludes nothing, so no value is near to it.
     let low = if accept.0 == 0.0 { f64::NEG_INFINITY } else { accept.0 };

@@ -11,7 +11,7 @@ use crate::stages::baselines::ClusteringMethod;
 /// Samples of one simulation share a body map, so that the simulation is the unit of every interval. With one
 /// simulation it is the chain, and every statement holds for that simulation alone.
 #[derive(Debug, Clone)]
-pub struct Conditions {
+pub(crate) struct Conditions {
     records: Vec<Record>,
     simulations: usize,
     resamples: Resamples,
@@ -19,20 +19,20 @@ pub struct Conditions {
 
 impl Conditions {
     /// Takes the records of `simulations` simulations; the bootstrap's random numbers derive from `seed`.
-    pub fn new(records: Vec<Record>, simulations: usize, seed: u64) -> Self {
+    pub(crate) fn new(records: Vec<Record>, simulations: usize, seed: u64) -> Self {
         const RESAMPLES: usize = 10_000;
         let resamples = Resamples::new(simulations, RESAMPLES, &mut stream(seed, 0, "bootstrap", 0));
         Self { records, simulations, resamples }
     }
 
     /// Number of simulations.
-    pub fn simulations(&self) -> usize {
+    pub(crate) fn simulations(&self) -> usize {
         self.simulations
     }
 
     /// The samples of these simulations, counted from 1, each as often as it is named, as if all were of one simulation and
     /// there were no other.
-    pub fn redrawn(&self, simulations: &[usize]) -> Self {
+    pub(crate) fn redrawn(&self, simulations: &[usize]) -> Self {
         let of = |simulation: &usize| {
             let simulation = *simulation;
             self.records.iter().filter(move |record| record.simulation == simulation)
@@ -46,7 +46,7 @@ impl Conditions {
     ///
     /// Samples with the same labels have the same log posterior but for rounding, and may have different trees: of those the
     /// first chain's counts, so that rounding decides nothing.
-    pub fn best(&self) -> Self {
+    pub(crate) fn best(&self) -> Self {
         let mut groups: Vec<Vec<&Record>> = Vec::new();
         for record in &self.records {
             let same = |group: &&mut Vec<&Record>| {
@@ -66,7 +66,7 @@ impl Conditions {
     }
 
     /// All conditions that were run, by mixture, then p, then d.
-    pub fn all(&self) -> Vec<Condition> {
+    pub(crate) fn all(&self) -> Vec<Condition> {
         let mut all: Vec<Condition> = Vec::new();
         for record in &self.records {
             if all.last() != Some(&record.condition()) {
@@ -83,12 +83,12 @@ impl Conditions {
     }
 
     /// The samples of one condition.
-    pub fn records(&self, condition: Condition) -> impl Iterator<Item = &Record> + Clone {
+    pub(crate) fn records(&self, condition: Condition) -> impl Iterator<Item = &Record> + Clone {
         self.records.iter().filter(move |record| record.condition() == condition)
     }
 
     /// A value of each sample of one condition, by simulation; samples without the value are left out.
-    pub fn by_simulation(
+    pub(crate) fn by_simulation(
         &self,
         condition: Condition,
         value: impl Fn(&Record) -> Option<f64>,
@@ -101,23 +101,23 @@ impl Conditions {
     }
 
     /// Adjusted Rand indices of one condition.
-    pub fn aris(&self, condition: Condition) -> Vec<f64> {
+    pub(crate) fn aris(&self, condition: Condition) -> Vec<f64> {
         self.records(condition).map(|record| record.ari).collect()
     }
 
     /// Mean number of parts.
-    pub fn mean_parts(&self, condition: Condition) -> Estimate {
+    pub(crate) fn mean_parts(&self, condition: Condition) -> Estimate {
         self.mean(&self.by_simulation(condition, |record| Some(record.parts as f64)))
     }
 
     /// Mean adjusted Rand index, whose interval ends at 1, the highest that there is.
-    pub fn mean_ari(&self, condition: Condition) -> Estimate {
+    pub(crate) fn mean_ari(&self, condition: Condition) -> Estimate {
         let mean = self.mean(&self.by_simulation(condition, |record| Some(record.ari)));
         Estimate { interval: mean.interval.map(|(low, high)| (low, high.min(1.0))), ..mean }
     }
 
     /// Share of right trees among the eligible samples of some conditions together.
-    pub fn tree_rate(&self, conditions: &[Condition]) -> Estimate {
+    pub(crate) fn tree_rate(&self, conditions: &[Condition]) -> Estimate {
         let mut groups = vec![Vec::new(); self.simulations];
         for &condition in conditions {
             for (group, outcomes) in groups.iter_mut().zip(self.trees(condition)) {
@@ -128,25 +128,25 @@ impl Conditions {
     }
 
     /// 1 for a right tree and 0 for a wrong one, of each eligible sample of one condition, by simulation.
-    pub fn trees(&self, condition: Condition) -> Vec<Vec<f64>> {
+    pub(crate) fn trees(&self, condition: Condition) -> Vec<Vec<f64>> {
         self.by_simulation(condition, |record| {
             record.eligible.then(|| f64::from(u8::from(record.tree_correct)))
         })
     }
 
     /// Mean of values, by simulation.
-    pub fn mean(&self, groups: &[Vec<f64>]) -> Estimate {
+    pub(crate) fn mean(&self, groups: &[Vec<f64>]) -> Estimate {
         self.clustered(mean(&groups.concat()), groups)
     }
 
     /// Rate of ones among ones and zeros, by simulation.
-    pub fn rate(&self, groups: &[Vec<f64>]) -> Estimate {
+    pub(crate) fn rate(&self, groups: &[Vec<f64>]) -> Estimate {
         self.clustered(pooled_rate(groups), groups)
     }
 
     /// The difference of the means, or of the rates if `rates`, of `groups` of these conditions and `others` of
     /// conditions of the same simulations: others minus groups.
-    pub fn difference(&self, groups: &[Vec<f64>], others: &[Vec<f64>], rates: bool) -> Estimate {
+    pub(crate) fn difference(&self, groups: &[Vec<f64>], others: &[Vec<f64>], rates: bool) -> Estimate {
         let pooled = |groups: &[Vec<f64>]| if rates { pooled_rate(groups) } else { mean(&groups.concat()) };
         let (first, second) = (totals(groups), totals(others));
         self.resamples.difference((pooled(groups), &first), (pooled(others), &second))
@@ -196,7 +196,7 @@ fn totals(groups: &[Vec<f64>]) -> Vec<(f64, usize)> {
 
 /// Mean ARI over simulations of a clustering that is told the number of clusters.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct BaselineEstimate {
+pub(crate) struct BaselineEstimate {
     /// The clustering.
     pub method: ClusteringMethod,
     /// K.
@@ -210,7 +210,7 @@ pub struct BaselineEstimate {
 }
 
 /// Means over simulations of records that are all of one p, by method, K and d.
-pub fn baseline_estimates(records: &[BaselineRecord]) -> Vec<BaselineEstimate> {
+pub(crate) fn baseline_estimates(records: &[BaselineRecord]) -> Vec<BaselineEstimate> {
     let place = |record: &BaselineRecord| (record.method, record.clusters, record.dimension);
     let mut sorted = records.to_vec();
     sorted.sort_by_key(place);

@@ -83,7 +83,7 @@ fn votes(labels: &[usize], distinct: &[(Vec<usize>, usize)]) -> Vec<Vec<usize>> 
 
 /// Names the clusters of a draw after the parts of the consensus that they match; those that match none get the numbers
 /// after them. Its tree goes with them.
-pub fn named_after(consensus: &[usize], draw: &mut Sample) {
+pub(crate) fn named_after(consensus: &[usize], draw: &mut Sample) {
     let mut names = matched(consensus, &draw.labels);
     let mut next = consensus.iter().max().map_or(0, |largest| largest + 1);
     for label in &mut draw.labels {
@@ -96,7 +96,7 @@ pub fn named_after(consensus: &[usize], draw: &mut Sample) {
 }
 
 /// Variation of information of two partitions of the same items, in bits: what each says beyond the other (Meilă 2007).
-pub fn variation_of_information(first: &[usize], second: &[usize]) -> f64 {
+pub(crate) fn variation_of_information(first: &[usize], second: &[usize]) -> f64 {
     let size = |labels: &[usize]| labels.iter().max().map_or(0, |largest| largest + 1);
     let (rows, columns) = (size(first), size(second));
     let mut both = vec![0usize; rows * columns];

@@ -5,10 +5,10 @@ use statrs::distribution::{ContinuousCDF, Normal};
 use statrs::statistics::{Data, Median};
 
 /// Up to this R̂, chains count as mixed (Vehtari et al., section 4).
-pub const LARGEST_R_HAT: f64 = 1.01;
+pub(crate) const LARGEST_R_HAT: f64 = 1.01;
 
 /// From this effective sample size on, R̂ can be trusted (section 4).
-pub const LEAST_ESS: f64 = 400.0;
+pub(crate) const LEAST_ESS: f64 = 400.0;
 
 /// How well chains have mixed, by a number of each of their draws.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -21,7 +21,7 @@ pub struct Mixing {
 }
 
 /// Of the draws of each chain, as many of each.
-pub fn mixing(chains: &[Vec<f64>]) -> Mixing {
+pub(crate) fn mixing(chains: &[Vec<f64>]) -> Mixing {
     let length = chains.iter().map(Vec::len).min().unwrap_or(0);
     if length < 4 || chains.iter().flatten().any(|x| !x.is_finite()) {
         return Mixing { r_hat: None, ess: None };

@@ -11,7 +11,7 @@ use crate::stages::schema::{Model, Sampler};
 
 /// What a run offers to judge claims by.
 #[derive(Debug, Clone)]
-pub struct Evidence {
+pub(crate) struct Evidence {
     /// All draws.
     pub conditions: Conditions,
     /// The clusterings that are told the number of clusters.
@@ -22,7 +22,7 @@ pub struct Evidence {
 
 impl Evidence {
     /// The draws of these simulations, each as often as it is named, as those of one.
-    pub fn redrawn(&self, simulations: &[usize]) -> Self {
+    pub(crate) fn redrawn(&self, simulations: &[usize]) -> Self {
         let (baselines, reading) = (self.baselines.clone(), self.reading);
         Self { conditions: self.conditions.redrawn(simulations), baselines, reading }
     }
@@ -32,7 +32,7 @@ impl Evidence {
 type Placed = (String, Estimate);
 
 /// All values that a claim is about, each with its place.
-pub fn measure(measure: &Measure, evidence: &Evidence) -> Vec<Placed> {
+pub(crate) fn measure(measure: &Measure, evidence: &Evidence) -> Vec<Placed> {
     let Evidence { conditions, baselines, .. } = evidence;
     let each = |at: &At, estimate: &dyn Fn(Condition) -> Estimate| -> Vec<Placed> {
         let places = places(at, conditions).into_iter();

@@ -6,7 +6,7 @@ use super::statistics::Estimate;
 
 /// How often single bodies show a claim.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct SingleBodies {
+pub(crate) struct SingleBodies {
     /// Share of the bodies with a value in which the published value would have been seen.
     pub alone: Estimate,
     /// Share of them in which all other claims of the experiment hold, too.
@@ -27,7 +27,7 @@ pub enum OneBody {
 
 impl SingleBodies {
     /// The verdict; `None` if no body has a value.
-    pub fn verdict(&self) -> Option<OneBody> {
+    pub(crate) fn verdict(&self) -> Option<OneBody> {
         self.alone.value.map(|share| match share {
             0.0 => OneBody::Never,
             share if share < 0.5 => OneBody::Possible,

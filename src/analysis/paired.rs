@@ -18,7 +18,7 @@ const ENOUGH: usize = 5;
 /// range, among those at which both have a value. Simulations are drawn in pairs, since they share what the two have in
 /// common. The interval is the expanded percentile interval (Hesterberg 2015), over the resamples in which both have a value;
 /// there is none if those are fewer than half, or for fewer than five simulations. The random numbers derive from `seed`.
-pub fn change(
+pub(crate) fn change(
     claim: &Claim,
     first: &Evidence,
     second: &Evidence,

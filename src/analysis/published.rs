@@ -5,14 +5,14 @@ use serde::{Deserialize, Serialize};
 use crate::stages::schema::Model;
 
 /// Short name of the claim that the paper is cited for.
-pub const HEADLINE: &str = "tree-accuracy";
+pub(crate) const HEADLINE: &str = "tree-accuracy";
 
 const PUBLISHED: &str = include_str!("../../reproduce/published.toml");
 
 /// An experiment of the paper.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Experiment {
+pub(crate) enum Experiment {
     /// Section 5: body schema estimation over the dimensions d of the body map.
     Exp1,
     /// Section 6: body schema estimation over the ratios p of motor coordination.
@@ -21,7 +21,7 @@ pub enum Experiment {
 
 impl Experiment {
     /// Name on the command line and in every file.
-    pub fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Exp1 => "exp1",
             Self::Exp2 => "exp2",
@@ -32,7 +32,7 @@ impl Experiment {
 /// A checkable statement of the paper.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Claim {
+pub(crate) struct Claim {
     /// Short name.
     pub id: String,
     /// The experiments that show it.
@@ -61,7 +61,7 @@ pub struct Claim {
 /// The conditions that a claim is about: all combinations.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct At {
+pub(crate) struct At {
     /// The mixtures; DPGMM-LJ if not given.
     #[serde(default = "joints")]
     pub models: Vec<Model>,
@@ -80,7 +80,7 @@ fn joints() -> Vec<Model> {
 /// What a claim is about.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
-pub enum Measure {
+pub(crate) enum Measure {
     /// Rate of right trees among the eligible draws, at each condition.
     TreeRate {
         /// The conditions.
@@ -184,7 +184,7 @@ pub enum Unit {
 
 impl Measure {
     /// The unit of its values; `None` if nothing is measured.
-    pub fn unit(&self) -> Option<Unit> {
+    pub(crate) fn unit(&self) -> Option<Unit> {
         Some(match self {
             Self::TreeRate { .. }
             | Self::PooledTreeRate { .. }
@@ -201,7 +201,7 @@ impl Measure {
     }
 
     /// Whether it counts draws, so that it can count the draw of highest log posterior alone.
-    pub fn counts_draws(&self) -> bool {
+    pub(crate) fn counts_draws(&self) -> bool {
         matches!(
             self,
             Self::TreeRate { .. }
@@ -254,7 +254,7 @@ fn file() -> Published {
 }
 
 /// The claims of `reproduce/published.toml`, in its order.
-pub fn claims() -> Vec<Claim> {
+pub(crate) fn claims() -> Vec<Claim> {
     file().claim
 }
 

@@ -9,7 +9,7 @@ use super::statistics::{Estimate, quantile, wilson};
 
 /// Whether something holds in a specification.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Held {
+pub(crate) struct Held {
     /// The movement, with its bodies, that the specification shares with others.
     pub movement: usize,
     /// Whether it holds.
@@ -18,7 +18,7 @@ pub struct Held {
 
 /// The share in which it holds, with a 95 % percentile interval over resamples of the movements, with which go their bodies,
 /// and of the specifications of each. The interval is never narrower than Wilson's for as many throws as there are movements.
-pub fn share(held: &[Held], rng: &mut impl Rng) -> Estimate {
+pub(crate) fn share(held: &[Held], rng: &mut impl Rng) -> Estimate {
     const RESAMPLES: usize = 2_000;
     let mut movements: Vec<(usize, Vec<f64>)> = Vec::new();
     for one in held {
@@ -44,7 +44,7 @@ pub fn share(held: &[Held], rng: &mut impl Rng) -> Estimate {
 
 /// The draws of a specification.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Rate {
+pub(crate) struct Rate {
     /// The movement, with its bodies.
     pub movement: usize,
     /// Successes and draws of each body.
@@ -53,7 +53,7 @@ pub struct Rate {
 
 impl Rate {
     /// Number of draws.
-    pub fn draws(&self) -> usize {
+    pub(crate) fn draws(&self) -> usize {
         self.bodies.iter().map(|(_, draws)| draws).sum()
     }
 
@@ -64,7 +64,7 @@ impl Rate {
 
 /// What a multiverse of rates looks like beside those that would be if one rate were true in all of it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct JointInference {
+pub(crate) struct JointInference {
     /// Number of specifications.
     pub n: usize,
     /// Share of them whose rate is in the range.
@@ -86,7 +86,7 @@ pub struct JointInference {
 ///
 /// Bodies differ: their rates are drawn from a beta distribution with the correlation that is seen between the draws of one
 /// body. All specifications of a movement have the same bodies; those of one must stand together. `None` without a rate.
-pub fn joint_inference(
+pub(crate) fn joint_inference(
     rates: &[Rate],
     true_rate: f64,
     range: (f64, f64),

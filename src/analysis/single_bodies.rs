@@ -13,7 +13,7 @@ use super::statistics::rate;
 const ELIGIBLE: usize = 5;
 
 /// Adds to judged claims how often single bodies show them; `bodies` has the evidence of each body.
-pub fn add_single_bodies(experiment: Experiment, judged: &mut [Judged], bodies: &[Evidence]) {
+pub(crate) fn add_single_bodies(experiment: Experiment, judged: &mut [Judged], bodies: &[Evidence]) {
     // Whether each body shows each claim; `None` where it has no value.
     let seen: Vec<Vec<Option<bool>>> =
         bodies.iter().map(|body| judge(experiment, body).iter().map(is_seen).collect()).collect();

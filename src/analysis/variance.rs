@@ -16,7 +16,7 @@ use super::statistics::Estimate;
 
 /// Numbers, and the levels that they were found at.
 #[derive(Debug, Clone)]
-pub struct Table {
+pub(crate) struct Table {
     /// The numbers.
     pub values: Vec<f64>,
     /// What each number shares with others that are not independent of it.
@@ -29,7 +29,7 @@ pub struct Table {
 
 /// What the variance is shared out to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Source {
+pub(crate) enum Source {
     /// A factor.
     Factor(usize),
     /// The interaction of two.
@@ -39,7 +39,7 @@ pub enum Source {
 impl Table {
     /// The share of the variance of every source, with a 95 % interval by the jackknife over clusters. Without a value
     /// where there are too few numbers, or they do not vary.
-    pub fn shares(&self) -> Vec<(Source, Estimate)> {
+    pub(crate) fn shares(&self) -> Vec<(Source, Estimate)> {
         let count = self.levels.len();
         let factors = (0..count).map(Source::Factor);
         let pairs = (0..count).flat_map(|a| (a + 1..count).map(move |b| Source::Pair(a, b)));

@@ -15,7 +15,7 @@ use crate::files::import::{Bones, Imported, SKIN, import};
 
 /// Makes files that describe a body, for simulate --body (not in the paper).
 #[derive(Args)]
-pub struct Body {
+pub(super) struct Body {
     #[command(subcommand)]
     action: Action,
 }
@@ -58,7 +58,7 @@ struct Import {
 
 impl Body {
     /// Runs the subcommand.
-    pub fn run(self) -> Result<ExitCode> {
+    pub(super) fn run(self) -> Result<ExitCode> {
         match self.action {
             Action::Import(command) => command.run(),
         }

@@ -36,7 +36,7 @@ use crate::tasks::progress::progress;
 /// Parts are joined as by `tree`: support is the bootstrap support of an edge, given the parts. Unless --settings says
 /// otherwise, pressures are quantised into eight levels for each sensor (reproduce/estimate.toml).
 #[derive(Args)]
-pub struct Estimate {
+pub(super) struct Estimate {
     /// Pressures: a .npy or .csv file with a row for each sample and a column for each sensor
     tactile: PathBuf,
     #[command(flatten)]
@@ -83,7 +83,7 @@ struct Summary {
 
 impl Estimate {
     /// Runs the subcommand.
-    pub fn run(self) -> Result<ExitCode> {
+    pub(super) fn run(self) -> Result<ExitCode> {
         let settings = self.common.load_over(Base::ESTIMATE)?;
         let (input, out, seed) = (&self.tactile, &self.out, settings.experiment.seed);
         let in_file = || input.display().to_string();

@@ -15,7 +15,7 @@ use crate::stages::evaluate::score;
 use crate::stages::tree::{Edge, Truth};
 
 /// What is known besides the estimate.
-pub struct Shown<'a> {
+pub(super) struct Shown<'a> {
     /// The file of the pressures.
     pub name: String,
     /// Time between two samples, s.
@@ -30,7 +30,7 @@ pub struct Shown<'a> {
 
 impl Shown<'_> {
     /// What the page shows.
-    pub fn estimated(&self, found: &Estimate, recording: &Recording) -> Estimated {
+    pub(super) fn estimated(&self, found: &Estimate, recording: &Recording) -> Estimated {
         Estimated {
             name: self.name.clone(),
             answers: self.answers(found, recording),

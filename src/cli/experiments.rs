@@ -29,7 +29,7 @@ use crate::stages::schema::Sampler;
 /// p-P/simulation-N/ without distances), manifest.json and run.json. A run that was stopped continues from what it
 /// finished.
 #[derive(Args)]
-pub struct Reproduce {
+pub(super) struct Reproduce {
     /// The experiment
     #[arg(value_parser = choice::<Experiment>())]
     experiment: Experiment,
@@ -54,7 +54,7 @@ pub struct Reproduce {
 
 impl Reproduce {
     /// Runs the subcommand.
-    pub fn run(self) -> Result<ExitCode> {
+    pub(super) fn run(self) -> Result<ExitCode> {
         let mut settings = self.common.load(self.quick)?;
         set(&mut settings.experiment.simulations, self.simulations);
         settings.validate()?;
@@ -121,7 +121,7 @@ impl Reproduce {
 /// bodies.md (the report). A study that was stopped continues; with more movements, it reuses those in checkpoints/. Each
 /// thread holds one simulated movement in memory: 0.4 GB for 840 sensors and 100,000 samples.
 #[derive(Args)]
-pub struct Bodies {
+pub(super) struct Bodies {
     /// Design file, such as reproduce/bodies.toml; paths of body files are relative to its folder
     #[arg(long, value_name = "FILE")]
     design: PathBuf,
@@ -137,7 +137,7 @@ pub struct Bodies {
 
 impl Bodies {
     /// Runs the subcommand.
-    pub fn run(self) -> Result<ExitCode> {
+    pub(super) fn run(self) -> Result<ExitCode> {
         self.threads.apply()?;
         let mut text = read_toml(&self.design)?;
         let mut design = bodies::Design::parse(&text, &self.design)?;

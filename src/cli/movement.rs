@@ -25,7 +25,7 @@ const APART: f64 = 1e-3;
 
 /// A movement that was recorded.
 #[derive(Args)]
-pub struct Recorded {
+pub(super) struct Recorded {
     /// Recorded movement that the body makes, instead of one at random: a BVH file. Without --body, its skeleton is the body, as
     /// `body import` makes it
     #[arg(long, value_name = "FILE")]
@@ -39,7 +39,7 @@ pub struct Recorded {
 }
 
 /// A body and how it moved.
-pub struct Played {
+pub(super) struct Played {
     /// The body. Joints that never moved are fixed.
     pub body: NamedBody,
     /// Its poses.
@@ -51,7 +51,7 @@ pub struct Played {
 }
 
 /// The body of a recorded skeleton.
-pub fn skeleton_body(
+pub(super) fn skeleton_body(
     path: &Path,
     movement: &RecordedMovement,
     skin: SkinEntry,
@@ -63,7 +63,7 @@ pub fn skeleton_body(
 impl Recorded {
     /// Moves a body, or else the skeleton's own, as `path` has it, sampled every `interval` (s), or else at its frames, for
     /// `duration` at most (s).
-    pub fn play(
+    pub(super) fn play(
         &self,
         path: &Path,
         body: Option<(&Path, NamedBody)>,

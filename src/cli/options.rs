@@ -18,7 +18,7 @@ use crate::stages::tree::Truth;
 
 /// The number of threads.
 #[derive(Args)]
-pub struct Threads {
+pub(super) struct Threads {
     /// Number of threads; results do not depend on it [default: one per core]
     #[arg(long, value_name = "N")]
     jobs: Option<usize>,
@@ -26,7 +26,7 @@ pub struct Threads {
 
 impl Threads {
     /// Starts as many threads as the user wants.
-    pub fn apply(&self) -> Result<()> {
+    pub(super) fn apply(&self) -> Result<()> {
         if let Some(jobs) = self.jobs {
             ensure!((1..=1024).contains(&jobs), "--jobs is {jobs}, but must be 1 to 1024");
             rayon::ThreadPoolBuilder::new().num_threads(jobs).build_global()?;
@@ -37,7 +37,7 @@ impl Threads {
 
 /// A settings file.
 #[derive(Args)]
-pub struct SettingsFile {
+pub(super) struct SettingsFile {
     /// File with the settings that differ from reproduce/paper.toml, which names and explains all of them
     #[arg(long, value_name = "FILE")]
     pub settings: Option<PathBuf>,
@@ -45,12 +45,12 @@ pub struct SettingsFile {
 
 impl SettingsFile {
     /// The settings, of a quick run if `quick`.
-    pub fn load(&self, quick: bool) -> Result<Settings> {
+    pub(super) fn load(&self, quick: bool) -> Result<Settings> {
         Ok(Settings::load(quick, self.settings.as_deref())?)
     }
 
     /// Whether the user's file has a setting.
-    pub fn has(&self, section: &str, key: &str) -> Result<bool> {
+    pub(super) fn has(&self, section: &str, key: &str) -> Result<bool> {
         let Some(path) = &self.settings else { return Ok(false) };
         let table: toml::Table = read_toml(path)?.parse()?;
         Ok(table.get(section).and_then(toml::Value::as_table).is_some_and(|own| own.contains_key(key)))
@@ -59,7 +59,7 @@ impl SettingsFile {
 
 /// A settings file and the master seed.
 #[derive(Args)]
-pub struct SettingsAndSeed {
+pub(super) struct SettingsAndSeed {
     #[command(flatten)]
     pub file: SettingsFile,
     #[arg(long, value_name = "S", help = with_default("Master seed of all random numbers", paper().experiment.seed))]
@@ -68,12 +68,12 @@ pub struct SettingsAndSeed {
 
 impl SettingsAndSeed {
     /// The settings, of a quick run if `quick`.
-    pub fn load(&self, quick: bool) -> Result<Settings> {
+    pub(super) fn load(&self, quick: bool) -> Result<Settings> {
         Ok(self.seeded(self.file.load(quick)?))
     }
 
     /// The settings, with those of a file of the project beneath the user's.
-    pub fn load_over(&self, base: Base) -> Result<Settings> {
+    pub(super) fn load_over(&self, base: Base) -> Result<Settings> {
         Ok(self.seeded(Settings::load_over(Some(base), self.file.settings.as_deref())?))
     }
 
@@ -85,7 +85,7 @@ impl SettingsAndSeed {
 
 /// The truth, to compare with.
 #[derive(Args)]
-pub struct TruthFiles {
+pub(super) struct TruthFiles {
     /// True part of each sensor: a .csv file with columns sensor,part
     #[arg(long, value_name = "FILE", requires = "tree")]
     labels: Option<PathBuf>,
@@ -96,26 +96,26 @@ pub struct TruthFiles {
 
 impl TruthFiles {
     /// The truth of a body with so many sensors, if it is given.
-    pub fn read(&self, sensors: usize) -> Result<Option<Truth>> {
+    pub(super) fn read(&self, sensors: usize) -> Result<Option<Truth>> {
         let files = self.labels.as_ref().zip(self.tree.as_ref());
         Ok(files.map(|(labels, tree)| read_truth(labels, tree, sensors)).transpose()?)
     }
 }
 
 /// Replaces a setting if its option was given.
-pub fn set<T>(setting: &mut T, option: Option<T>) {
+pub(super) fn set<T>(setting: &mut T, option: Option<T>) {
     if let Some(value) = option {
         *setting = value;
     }
 }
 
 /// The default settings.
-pub fn paper() -> Settings {
+pub(super) fn paper() -> Settings {
     Settings::paper()
 }
 
 /// A help text with a setting's default.
-pub fn with_default(text: &str, default: impl Serialize) -> String {
+pub(super) fn with_default(text: &str, default: impl Serialize) -> String {
     format!("{text} [default: {}]", name(&default))
 }
 
@@ -125,13 +125,13 @@ fn name(value: &impl Serialize) -> String {
 }
 
 /// A setting with a fixed set of values.
-pub trait Choice: Clone + Send + Sync + Serialize + DeserializeOwned + 'static {
+pub(super) trait Choice: Clone + Send + Sync + Serialize + DeserializeOwned + 'static {
     /// All values, each with what it means.
     const VALUES: &'static [(Self, &'static str)];
 }
 
 /// Reads a [`Choice`] from the command line, and explains its values in the help text.
-pub fn choice<T: Choice>() -> impl TypedValueParser<Value = T> {
+pub(super) fn choice<T: Choice>() -> impl TypedValueParser<Value = T> {
     let values = T::VALUES.iter().map(|(value, help)| PossibleValue::new(name(value)).help(*help));
     let read = |text: String| serde_json::from_value(text.into()).expect("clap admits the named values only");
     PossibleValuesParser::new(values).map(read)
@@ -231,13 +231,13 @@ impl Choice for Experiment {
 }
 
 /// A length of time above 0, s.
-pub fn seconds(text: &str) -> Result<f64, String> {
+pub(super) fn seconds(text: &str) -> Result<f64, String> {
     let seconds: f64 = text.parse().map_err(|_| "it must be a number of seconds".to_owned())?;
     if seconds.is_finite() && seconds > 0.0 { Ok(seconds) } else { Err("it must be above 0".to_owned()) }
 }
 
 /// A length above 0, m.
-pub fn metres(text: &str) -> Result<f64, String> {
+pub(super) fn metres(text: &str) -> Result<f64, String> {
     let metres: f64 = text.parse().map_err(|_| "it must be a number of metres".to_owned())?;
     if (1e-6..=1e6).contains(&metres) { Ok(metres) } else { Err("it must be 0.000001 to 1000000".to_owned()) }
 }

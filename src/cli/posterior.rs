@@ -44,7 +44,7 @@ struct MixingRow {
 }
 
 /// Writes posterior.csv, parts.csv, edges.csv and diagnostics.csv.
-pub fn write(out: &Path, posterior: &Posterior) -> Result<()> {
+pub(super) fn write(out: &Path, posterior: &Posterior) -> Result<()> {
     let counts = posterior.parts.iter().map(|&(parts, probability)| CountRow { parts, probability });
     write_rows(&out.join("posterior.csv"), counts)?;
     let consensus = &posterior.consensus;
@@ -72,7 +72,7 @@ pub fn write(out: &Path, posterior: &Posterior) -> Result<()> {
 
 /// Prints the number of parts, the tree, and whether the chains have mixed; and how the consensus compares with the truth, if
 /// that is known.
-pub fn print(posterior: &Posterior, truth: Option<&Truth>, eligible_ari: f64) -> Result<()> {
+pub(super) fn print(posterior: &Posterior, truth: Option<&Truth>, eligible_ari: f64) -> Result<()> {
     let counts: Vec<String> =
         posterior.parts.iter().map(|(parts, share)| format!("{parts} ({})", percent(*share))).collect();
     say(format!("number of parts: {}", counts.join(", ")))?;

@@ -20,7 +20,7 @@ use crate::study;
 /// figures, claims.csv, claims.md and report.html. Of a study: study.md and its figures, from its tables. Of a study of bodies:
 /// bodies.md and its figure. Of any other folder: an .svg beside each figures/*.csv.
 #[derive(Args)]
-pub struct Plot {
+pub(super) struct Plot {
     /// Folder of an experiment or study
     #[arg(value_name = "DIR")]
     folder: PathBuf,
@@ -28,7 +28,7 @@ pub struct Plot {
 
 impl Plot {
     /// Runs the subcommand.
-    pub fn run(self) -> Result<ExitCode> {
+    pub(super) fn run(self) -> Result<ExitCode> {
         let folder = &self.folder;
         if study::is_study(folder) {
             study::redraw(folder)?;
@@ -69,7 +69,7 @@ impl Plot {
 /// rates (eligible samples, correct trees) are within 4 standard errors in each condition. Lists the files that are not
 /// the same.
 #[derive(Args)]
-pub struct Verify {
+pub(super) struct Verify {
     /// Folder of results
     #[arg(value_name = "DIR")]
     folder: PathBuf,
@@ -80,7 +80,7 @@ pub struct Verify {
 
 impl Verify {
     /// Runs the subcommand.
-    pub fn run(self) -> Result<ExitCode> {
+    pub(super) fn run(self) -> Result<ExitCode> {
         let folder = &self.folder;
         let mut agree = true;
         if self.against.is_none() || Manifest::is_in(folder) {

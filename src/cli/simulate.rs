@@ -34,7 +34,7 @@ use crate::tasks::progress::progress;
 /// poses.npy (float32, T + 1 x 7 for each solid); with --body or --movement also names.csv (part,name). T is the number
 /// of samples in time, M the number of sensors.
 #[derive(Args)]
-pub struct Simulate {
+pub(super) struct Simulate {
     #[command(flatten)]
     common: SettingsAndSeed,
     /// Body to simulate, instead of the one in the settings: a .toml file, such as those in the folder bodies
@@ -58,7 +58,7 @@ struct NameRow {
 
 impl Simulate {
     /// Runs the subcommand.
-    pub fn run(self) -> Result<ExitCode> {
+    pub(super) fn run(self) -> Result<ExitCode> {
         let mut settings = self.common.load(false)?;
         set(&mut settings.physics.duration, self.duration);
         let body = self.body.as_deref().map(read_body).transpose()?;

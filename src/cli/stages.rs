@@ -27,7 +27,7 @@ use crate::tasks::progress::progress;
 /// Reads pressures (float32, float64 or integers, T x M, Pa, not negative) and writes the distances
 /// H(X|Y) + H(Y|X) between all pairs of sensors (float64, M x M, bits).
 #[derive(Args)]
-pub struct Distance {
+pub(super) struct Distance {
     /// Pressures, or symbols with --symbols: a .npy file with a row for each sample and a column for each sensor
     tactile: PathBuf,
     #[arg(long, value_parser = choice::<Scheme>(),
@@ -48,7 +48,7 @@ pub struct Distance {
 
 impl Distance {
     /// Runs the subcommand.
-    pub fn run(self) -> Result<ExitCode> {
+    pub(super) fn run(self) -> Result<ExitCode> {
         let (input, out) = (&self.tactile, &self.out);
         let mut settings = self.file.load(false)?;
         set(&mut settings.quantise.scheme, self.scheme);
@@ -87,7 +87,7 @@ impl Distance {
 /// map by descending eigenvalue). For smacof and nonmetric, which start from the classical map, and for smacof-random,
 /// which starts from random ones, it prints Kruskal's stress-1.
 #[derive(Args)]
-pub struct Map {
+pub(super) struct Map {
     /// Distances: a .npy file, M x M, symmetric
     distance: PathBuf,
     /// Number of dimensions
@@ -109,7 +109,7 @@ pub struct Map {
 
 impl Map {
     /// Runs the subcommand.
-    pub fn run(self) -> Result<ExitCode> {
+    pub(super) fn run(self) -> Result<ExitCode> {
         let (input, out, dims) = (&self.distance, &self.out, self.dims);
         let mut settings = self.common.load(false)?;
         set(&mut settings.map.method, self.method);
@@ -162,7 +162,7 @@ impl Map {
 /// (part,other,probability,in_tree: which parts are joined) and diagnostics.csv (quantity,r_hat,ess: convergence of the
 /// chains).
 #[derive(Args)]
-pub struct Infer {
+pub(super) struct Infer {
     /// Body map: a .npy file, M x D
     body_map: PathBuf,
     /// Mixture model
@@ -198,7 +198,7 @@ pub struct Infer {
 
 impl Infer {
     /// Runs the subcommand.
-    pub fn run(self) -> Result<ExitCode> {
+    pub(super) fn run(self) -> Result<ExitCode> {
         let settings = self.settings()?;
         let Settings { schema, evaluate, experiment, .. } = &settings;
         let (input, out) = (&self.body_map, &self.out);

@@ -22,7 +22,7 @@ use crate::tasks::seeds::used_before;
 /// each configuration and claim), where the design asks for them measures.csv, shares.csv, variance.csv and ranking.csv, and
 /// design.toml. A run that was stopped continues. On several machines: run each shard into one shared folder, then gather.
 #[derive(Args)]
-pub struct Study {
+pub(super) struct Study {
     /// Design: a file, or the name of a bundled design
     #[arg(value_name = "DESIGN")]
     design: PathBuf,
@@ -47,7 +47,7 @@ pub struct Study {
 
 impl Study {
     /// Runs the subcommand.
-    pub fn run(self) -> Result<ExitCode> {
+    pub(super) fn run(self) -> Result<ExitCode> {
         self.threads.apply()?;
         let source = DesignText::read(&self.design, self.seed)?;
         let design = Design::parse(&source)?;

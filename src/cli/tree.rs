@@ -29,7 +29,7 @@ use crate::stages::tree::Truth;
 /// spanning tree of greatest correlation. Support is the bootstrap support of an edge, given the parts: the share of trees
 /// over resampled blocks of time that have it.
 #[derive(Args)]
-pub struct Tree {
+pub(super) struct Tree {
     /// Pressures: a .npy or .csv file with a row for each sample and a column for each sensor
     tactile: PathBuf,
     /// Part of each sensor: a .csv file with columns sensor,part, such as parts.csv of infer; sensors without a row are
@@ -66,7 +66,7 @@ struct EdgeRow {
 
 impl Tree {
     /// Runs the subcommand.
-    pub fn run(self) -> Result<ExitCode> {
+    pub(super) fn run(self) -> Result<ExitCode> {
         let (input, out) = (&self.tactile, &self.out);
         let all = read_touch(input)?;
         let count = all.sensors();
@@ -99,7 +99,7 @@ impl Tree {
 }
 
 /// Says what cleaning changed.
-pub fn say_cleaned(input: &Path, Recording { tactile, lost_samples, noisy, .. }: &Recording) {
+pub(super) fn say_cleaned(input: &Path, Recording { tactile, lost_samples, noisy, .. }: &Recording) {
     let name = input.display();
     if *lost_samples > 0 {
         eprintln!(
@@ -115,7 +115,7 @@ pub fn say_cleaned(input: &Path, Recording { tactile, lost_samples, noisy, .. }:
 }
 
 /// Refuses a folder whose tree.csv is the true one, which would be lost.
-pub fn refuse_truth(out: &Path) -> Result<()> {
+pub(super) fn refuse_truth(out: &Path) -> Result<()> {
     ensure!(
         !out.join("labels.csv").is_file(),
         "{}: holds true parts (labels.csv) and their tree.csv, which would be overwritten; give another --out",
@@ -125,18 +125,18 @@ pub fn refuse_truth(out: &Path) -> Result<()> {
 }
 
 /// Prints how parts and tree compare with the truth.
-pub fn print_score(score: &Score) -> Result<()> {
+pub(super) fn print_score(score: &Score) -> Result<()> {
     say(format!("against the truth: {}", in_words(score)))
 }
 
 /// A score, in words.
-pub fn in_words(score: &Score) -> String {
+pub(super) fn in_words(score: &Score) -> String {
     let recovered = if score.tree_correct { "recovered" } else { "not recovered" };
     format!("adjusted Rand index {:.3}, true tree {recovered}", score.ari)
 }
 
 /// Writes tree.csv and edges.csv.
-pub fn write(out: &Path, found: &Joints) -> Result<()> {
+pub(super) fn write(out: &Path, found: &Joints) -> Result<()> {
     let edges = found.tree.iter().map(|edge| TreeRow {
         child: edge.child,
         parent: edge.parent,
@@ -155,7 +155,7 @@ pub fn write(out: &Path, found: &Joints) -> Result<()> {
 }
 
 /// Prints the tree, with the bootstrap support of each edge.
-pub fn print(found: &Joints, labels: &[usize]) -> Result<()> {
+pub(super) fn print(found: &Joints, labels: &[usize]) -> Result<()> {
     let sizes = sizes(labels);
     let parts: Vec<(usize, usize)> = found.ranks.iter().map(|(part, rank)| (*part, *rank)).collect();
     let place = |part: usize| parts.iter().position(|(label, _)| *label == part).unwrap_or_default();

@@ -18,7 +18,7 @@ use crate::report::viewer::page::page;
 /// (sensor,part) and tree.csv (child,parent,support). The body is shown if DIR has solids.csv, sensors.csv and poses.npy, as
 /// `simulate` writes them. Without body-map.npy, a map of three dimensions is computed as by `distance` and `map`.
 #[derive(Args)]
-pub struct View {
+pub(super) struct View {
     /// Folder of a simulation, an estimate, or data of your own
     #[arg(value_name = "DIR")]
     folder: PathBuf,
@@ -38,7 +38,7 @@ pub struct View {
 
 impl View {
     /// Runs the subcommand.
-    pub fn run(self) -> Result<ExitCode> {
+    pub(super) fn run(self) -> Result<ExitCode> {
         let settings = self.file.load(false)?;
         let sources = Sources {
             folder: &self.folder,

@@ -1,4 +1,4 @@
 //! Run the paper's experiments and the benchmark of bodies.
 
-pub mod bodies;
-pub mod reproduce;
+pub(crate) mod bodies;
+pub(crate) mod reproduce;

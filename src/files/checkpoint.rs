@@ -17,7 +17,7 @@ use serde_json::value::RawValue;
 
 /// The checkpoints of one run.
 #[derive(Debug)]
-pub struct Checkpoints {
+pub(crate) struct Checkpoints {
     folder: PathBuf,
     /// What the results depend on.
     key: String,
@@ -34,19 +34,19 @@ struct File {
 
 impl Checkpoints {
     /// The checkpoints in the folder `out`, of a run whose results depend on `inputs` alone.
-    pub fn new(out: &Path, inputs: &impl Serialize) -> Self {
+    pub(crate) fn new(out: &Path, inputs: &impl Serialize) -> Self {
         let inputs = serde_json::to_string(inputs).expect("inputs are plain data");
         let key = sha256_of_text(&format!("{}{inputs}", program()));
         Self { folder: out.join("checkpoints"), key, told: Default::default() }
     }
 
     /// The same, without a word of them: what is recalled is of this run.
-    pub fn silent(out: &Path, inputs: &impl Serialize) -> Self {
+    pub(crate) fn silent(out: &Path, inputs: &impl Serialize) -> Self {
         Self { told: [true, false].map(AtomicBool::new), ..Self::new(out, inputs) }
     }
 
     /// What an earlier run kept under a name; `None` if it kept nothing that can be used.
-    pub fn recall<T: DeserializeOwned>(&self, name: &str) -> Option<T> {
+    pub(crate) fn recall<T: DeserializeOwned>(&self, name: &str) -> Option<T> {
         let path = self.path(name);
         let text = match fs::read_to_string(&path) {
             Ok(text) => text,
@@ -87,7 +87,7 @@ impl Checkpoints {
     ///
     /// # Errors
     /// If it cannot be written.
-    pub fn keep<T: Serialize>(&self, name: &str, content: &T) -> Result<(), FileError> {
+    pub(crate) fn keep<T: Serialize>(&self, name: &str, content: &T) -> Result<(), FileError> {
         let content = serde_json::value::to_raw_value(content).expect("results are plain data");
         let file = File { key: self.key.clone(), sha256: sha256_of_text(content.get()), content };
         let text = serde_json::to_string(&file).expect("a checkpoint is plain data");
@@ -98,7 +98,7 @@ impl Checkpoints {
     ///
     /// # Errors
     /// If they cannot be removed.
-    pub fn clear(&self) -> Result<(), FileError> {
+    pub(crate) fn clear(&self) -> Result<(), FileError> {
         remove(&self.folder)
     }
 
@@ -106,7 +106,7 @@ impl Checkpoints {
     ///
     /// # Errors
     /// If they cannot be removed.
-    pub fn forget(&self, name: &str) -> Result<(), FileError> {
+    pub(crate) fn forget(&self, name: &str) -> Result<(), FileError> {
         remove(&self.folder.join(name))
     }
 

@@ -22,6 +22,6 @@ fn hexadecimal(bytes: &[u8]) -> String {
 }
 
 /// SHA-256 of a text, in hexadecimal.
-pub fn sha256_of_text(text: &str) -> String {
+pub(crate) fn sha256_of_text(text: &str) -> String {
     hexadecimal(&Sha256::digest(text))
 }

@@ -13,7 +13,7 @@ use super::provenance::{Provenance, field_of};
 use super::whole::{read_text, write_text};
 
 /// The name of the manifest in its folder.
-pub const MANIFEST: &str = "manifest.json";
+pub(crate) const MANIFEST: &str = "manifest.json";
 
 /// What made the results in a folder, and the hash of each file.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -105,7 +105,7 @@ impl Manifest {
 }
 
 /// The command by which this process was started; what is no text in it is replaced.
-pub fn arguments() -> Vec<String> {
+pub(crate) fn arguments() -> Vec<String> {
     std::env::args_os().map(|argument| argument.to_string_lossy().into_owned()).collect()
 }
 
@@ -123,7 +123,10 @@ struct Circumstances {
 ///
 /// # Errors
 /// If it cannot be written.
-pub fn write_circumstances(folder: &Path, (started, clock): (SystemTime, Instant)) -> Result<(), FileError> {
+pub(crate) fn write_circumstances(
+    folder: &Path,
+    (started, clock): (SystemTime, Instant),
+) -> Result<(), FileError> {
     let circumstances = Circumstances {
         command: arguments(),
         started: humantime::format_rfc3339_seconds(started).to_string(),
@@ -138,7 +141,7 @@ pub fn write_circumstances(folder: &Path, (started, clock): (SystemTime, Instant
 ///
 /// # Errors
 /// If it cannot be written.
-pub fn write_json(path: &Path, value: &impl Serialize) -> Result<(), FileError> {
+pub(crate) fn write_json(path: &Path, value: &impl Serialize) -> Result<(), FileError> {
     let text = serde_json::to_string_pretty(value).expect("plain data can be written as JSON");
     write_text(path, &(text + "\n"))
 }

@@ -14,11 +14,11 @@ use crate::stages::agent::{Agent, Shape, Site, Vector3};
 use crate::stages::simulate::{Pose, Trajectory};
 
 /// Numbers of a pose: the centre (m), then the rotation as a quaternion w, x, y, z.
-pub const NUMBERS: usize = 7;
+pub(crate) const NUMBERS: usize = 7;
 
 /// The solids of a body, the sensors on them, and where the solids were.
 #[derive(Debug, Clone, PartialEq)]
-pub struct MovedBody {
+pub(crate) struct MovedBody {
     /// The shape of each solid, in its own frame.
     pub shapes: Vec<Shape>,
     /// The sensors; `part` is the solid.
@@ -62,7 +62,7 @@ struct SensorRow {
 
 impl MovedBody {
     /// A body and how it moved.
-    pub fn of(agent: &Agent, trajectory: &Trajectory) -> Self {
+    pub(crate) fn of(agent: &Agent, trajectory: &Trajectory) -> Self {
         let pose = |pose: &Pose| {
             let ([x, y, z], [w, i, j, k]) = (pose.position, quaternion(&pose.rotation));
             [x, y, z, w, i, j, k].map(|number| number as f32)
@@ -75,7 +75,7 @@ impl MovedBody {
     }
 
     /// Whether a folder has one.
-    pub fn is_in(folder: &Path) -> bool {
+    pub(crate) fn is_in(folder: &Path) -> bool {
         folder.join("poses.npy").is_file()
     }
 
@@ -83,7 +83,7 @@ impl MovedBody {
     ///
     /// # Errors
     /// If a file cannot be written.
-    pub fn write(&self, folder: &Path, parts: &[usize]) -> Result<(), FileError> {
+    pub(crate) fn write(&self, folder: &Path, parts: &[usize]) -> Result<(), FileError> {
         let solids = self.shapes.iter().zip(parts).enumerate();
         write_rows(
             &folder.join("solids.csv"),
@@ -98,7 +98,7 @@ impl MovedBody {
     ///
     /// # Errors
     /// If a file is missing, or they do not fit each other.
-    pub fn read(folder: &Path) -> Result<Self, FileError> {
+    pub(crate) fn read(folder: &Path) -> Result<Self, FileError> {
         let [solids, sensors, poses] =
             ["solids.csv", "sensors.csv", "poses.npy"].map(|name| folder.join(name));
         let shape = |(at, row): (usize, SolidRow)| {

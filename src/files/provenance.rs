@@ -53,7 +53,7 @@ impl Provenance {
 }
 
 /// The value of the first `name : value` line of a file of the proc file system.
-pub fn field_of(path: &str, name: &str) -> Option<String> {
+pub(crate) fn field_of(path: &str, name: &str) -> Option<String> {
     let text = std::fs::read_to_string(path).ok()?;
     let (_, value) = text.lines().find(|line| line.starts_with(name))?.split_once(':')?;
     Some(value.trim().to_owned())

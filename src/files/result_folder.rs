@@ -14,7 +14,7 @@ use super::whole::write_text;
 
 /// A folder of results that remembers the names of its files, in the order in which they were written.
 #[derive(Debug)]
-pub struct ResultFolder {
+pub(crate) struct ResultFolder {
     path: PathBuf,
     names: Vec<String>,
     begun: SystemTime,
@@ -22,12 +22,12 @@ pub struct ResultFolder {
 
 impl ResultFolder {
     /// A folder to write to. It is made when the work begins: its crate states that time.
-    pub fn new(path: &Path) -> Self {
+    pub(crate) fn new(path: &Path) -> Self {
         Self { path: path.to_owned(), names: Vec::new(), begun: SystemTime::now() }
     }
 
     /// Where it is.
-    pub fn path(&self) -> &Path {
+    pub(crate) fn path(&self) -> &Path {
         &self.path
     }
 
@@ -35,7 +35,7 @@ impl ResultFolder {
     ///
     /// # Errors
     /// If it cannot be written.
-    pub fn write_rows<T: Serialize>(
+    pub(crate) fn write_rows<T: Serialize>(
         &mut self,
         name: &str,
         rows: impl IntoIterator<Item = T>,
@@ -49,7 +49,7 @@ impl ResultFolder {
     ///
     /// # Errors
     /// If it cannot be written.
-    pub fn write_text(&mut self, name: &str, text: &str) -> Result<(), FileError> {
+    pub(crate) fn write_text(&mut self, name: &str, text: &str) -> Result<(), FileError> {
         write_text(&self.path.join(name), text)?;
         self.remember_one(name);
         Ok(())
@@ -63,7 +63,7 @@ impl ResultFolder {
     }
 
     /// Remembers files that are there already.
-    pub fn remember(&mut self, names: impl IntoIterator<Item = String>) {
+    pub(crate) fn remember(&mut self, names: impl IntoIterator<Item = String>) {
         names.into_iter().for_each(|name| self.remember_one(&name));
     }
 
@@ -71,7 +71,7 @@ impl ResultFolder {
     ///
     /// # Errors
     /// If one is there and cannot be removed.
-    pub fn remove(&self, names: impl IntoIterator<Item = String>) -> Result<(), FileError> {
+    pub(crate) fn remove(&self, names: impl IntoIterator<Item = String>) -> Result<(), FileError> {
         for path in names.into_iter().map(|name| self.path.join(name)).filter(|path| path.exists()) {
             fs::remove_file(&path)
                 .map_err(|error| FileError::new(&path, format!("cannot be replaced: {error}")))?;
@@ -84,7 +84,7 @@ impl ResultFolder {
     ///
     /// # Errors
     /// If a file cannot be read, or one of the two not written.
-    pub fn write_manifest(&self, manifest: Manifest) -> Result<Manifest, FileError> {
+    pub(crate) fn write_manifest(&self, manifest: Manifest) -> Result<Manifest, FileError> {
         let hash = |name: &String| HashedFile::new(name, &self.path.join(name));
         let outputs = self.names.iter().map(hash).collect::<Result<_, _>>()?;
         let manifest = Manifest { outputs, ..manifest };

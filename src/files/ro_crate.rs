@@ -17,7 +17,7 @@ use super::provenance::Provenance;
 use super::whole::read_text;
 
 /// The name of the crate's description in its folder.
-pub const RO_CRATE: &str = "ro-crate-metadata.json";
+pub(crate) const RO_CRATE: &str = "ro-crate-metadata.json";
 
 /// Files of a folder that say what was to be done; all others are what came of it.
 const TASKS: [&str; 2] = ["settings.toml", "design.toml"];
@@ -30,7 +30,7 @@ const ODE: &str = "https://www.ode.org";
 ///
 /// # Errors
 /// If it cannot be written.
-pub fn write(folder: &Path, manifest: &Manifest, begun: SystemTime) -> Result<(), FileError> {
+pub(crate) fn write(folder: &Path, manifest: &Manifest, begun: SystemTime) -> Result<(), FileError> {
     write_json(&folder.join(RO_CRATE), &described(manifest, begun, SystemTime::now()))
 }
 
@@ -182,7 +182,7 @@ struct Entity {
 ///
 /// # Errors
 /// If the crate cannot be read as one.
-pub fn stated(folder: &Path) -> Result<Option<Vec<HashedFile>>, FileError> {
+pub(crate) fn stated(folder: &Path) -> Result<Option<Vec<HashedFile>>, FileError> {
     let path = folder.join(RO_CRATE);
     if !path.exists() {
         return Ok(None);

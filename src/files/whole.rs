@@ -64,7 +64,7 @@ pub fn prepare_folder(path: &Path) -> Result<(), FileError> {
 ///
 /// # Errors
 /// As for [`write_whole`].
-pub fn write_same_text(path: &Path, text: &str) -> Result<(), FileError> {
+pub(crate) fn write_same_text(path: &Path, text: &str) -> Result<(), FileError> {
     let aside = path.with_added_extension(own("new"));
     write_text(&aside, text)?;
     fs::rename(&aside, path).map_err(|error| FileError::new(path, format!("cannot be written: {error}")))

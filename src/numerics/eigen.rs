@@ -44,7 +44,7 @@ const ONE_THREAD: Par = Par::Seq;
 
 /// Eigenvalues and eigenvectors of a symmetric matrix.
 #[derive(Debug, Clone)]
-pub struct Eigen {
+pub(crate) struct Eigen {
     /// Descending.
     pub values: Vec<f64>,
     /// n × number of values, of unit length.
@@ -53,14 +53,14 @@ pub struct Eigen {
 
 /// A decomposition that did not converge.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct NoConvergence;
+pub(crate) struct NoConvergence;
 
 /// The `wanted` largest eigenvalues of a symmetric n × n matrix, or all n if `wanted` is more; a multiple eigenvalue is
 /// repeated.
 ///
 /// # Errors
 /// If the decomposition does not converge.
-pub fn largest(matrix: MatRef<'_, f64>, wanted: usize) -> Result<Eigen, NoConvergence> {
+pub(crate) fn largest(matrix: MatRef<'_, f64>, wanted: usize) -> Result<Eigen, NoConvergence> {
     let wanted = wanted.min(matrix.nrows());
     let block = wanted + SPARE;
     let few = 2 * BLOCKS * block <= matrix.nrows();

@@ -10,7 +10,7 @@ use super::partition::named_by_appearance;
 /// fewer different points.
 ///
 /// `distance(i, j)` is asked for i < j. Of merges of equal cost, the first one in the order of the points is made.
-pub fn clusters(
+pub(crate) fn clusters(
     n: usize,
     distance: impl Fn(usize, usize) -> f64,
     method: Method,

@@ -9,7 +9,7 @@ use pulp::{Arch, Simd, WithSimd};
 /// never mix and it multiplies and adds by `mul_add`, which rounds once on any machine, then every set of
 /// instructions gives the same bits.
 #[inline(always)]
-pub fn vectorised<R>(work: impl FnMut() -> R) -> R {
+pub(crate) fn vectorised<R>(work: impl FnMut() -> R) -> R {
     Arch::new().dispatch(Work(work))
 }
 

@@ -235,7 +235,7 @@ fn count(share: f64, of: usize) -> usize {
 }
 
 /// The table of claims: a row for each claim, followed by one for the best draws if the claim counts draws.
-pub fn rows(judged: &[Judged]) -> Vec<Row> {
+pub(crate) fn rows(judged: &[Judged]) -> Vec<Row> {
     let both = |judged: &Judged| {
         let best = judged.best.as_ref();
         let best =
@@ -246,19 +246,19 @@ pub fn rows(judged: &[Judged]) -> Vec<Row> {
 }
 
 /// The rows of a quick run: an illustration, in which nothing is judged.
-pub fn illustrated(rows: Vec<Row>) -> Vec<Row> {
+pub(crate) fn illustrated(rows: Vec<Row>) -> Vec<Row> {
     rows.into_iter().map(|row| Row { verdict: None, one_body: None, ..row }).collect()
 }
 
 /// The table in Markdown.
-pub fn markdown_table(rows: &[Row]) -> String {
+pub(crate) fn markdown_table(rows: &[Row]) -> String {
     let mut lines = vec![markdown::row(Row::HEADER), markdown::rule(Row::HEADER.len())];
     lines.extend(rows.iter().map(|row| markdown::row(row.in_words())));
     lines.join("\n") + "\n"
 }
 
 /// The table for a terminal, a line for each row.
-pub fn terminal_table(rows: &[Row]) -> String {
+pub(crate) fn terminal_table(rows: &[Row]) -> String {
     let header =
         ["verdict", "claim", "published", "reproduced", "95 % interval", "n", "simulations that show it"]
             .map(str::to_owned);
@@ -278,4 +278,4 @@ pub fn terminal_table(rows: &[Row]) -> String {
 }
 
 #[cfg(test)]
-pub mod tests;
+pub(crate) mod tests;

@@ -8,7 +8,7 @@ use super::viewer::scene::Scene;
 
 /// What was estimated.
 #[derive(Debug)]
-pub struct Estimated {
+pub(crate) struct Estimated {
     /// The file of the pressures.
     pub name: String,
     /// What came out, a sentence each.
@@ -23,7 +23,7 @@ pub struct Estimated {
 
 /// A part, for the table.
 #[derive(Debug)]
-pub struct PartLine {
+pub(crate) struct PartLine {
     /// Its number.
     pub part: usize,
     /// How many sensors are on it.
@@ -35,7 +35,7 @@ pub struct PartLine {
 }
 
 /// The page, which needs no other file and no network.
-pub fn page(estimated: &Estimated) -> String {
+pub(crate) fn page(estimated: &Estimated) -> String {
     let Estimated { name, answers, parts, scene, facts } = estimated;
     html! {
         (DOCTYPE)

@@ -17,7 +17,7 @@ pub enum Counting {
 
 /// A point of figure 4: something of the agent, in its rest pose.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct AgentRow {
+pub(crate) struct AgentRow {
     /// The part, from 0.
     pub part: usize,
     /// What it is.
@@ -33,7 +33,7 @@ pub struct AgentRow {
 /// What a point of figure 4 is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum AgentPoint {
+pub(crate) enum AgentPoint {
     /// The proximal end of the cylinder's axis.
     ProximalEnd,
     /// The distal end of the cylinder's axis.
@@ -46,7 +46,7 @@ pub enum AgentPoint {
 
 /// A time of a joint of figure 5.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct AngleRow {
+pub(crate) struct AngleRow {
     /// p.
     pub coordination: f64,
     /// Time, s.
@@ -61,7 +61,7 @@ pub struct AngleRow {
 
 /// A point on a body map of figure 6.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct MapRow {
+pub(crate) struct MapRow {
     /// What it is.
     pub kind: MapPoint,
     /// Number of the sensor or joint, from 0.
@@ -80,7 +80,7 @@ pub struct MapRow {
 /// What a point on a body map is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum MapPoint {
+pub(crate) enum MapPoint {
     /// A sensor.
     Sensor,
     /// An estimated joint q.
@@ -89,7 +89,7 @@ pub enum MapPoint {
 
 /// A bar of figure 7, with the mean of its histogram.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct PartsRow {
+pub(crate) struct PartsRow {
     /// d.
     pub dimension: usize,
     /// Which draws are counted.
@@ -110,7 +110,7 @@ pub struct PartsRow {
 
 /// A box of figure 9, over the draws of all simulations.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct BoxRow {
+pub(crate) struct BoxRow {
     /// d.
     pub dimension: usize,
     /// Draws.
@@ -133,7 +133,7 @@ pub struct BoxRow {
 
 /// A point of a curve of figures 8, 10 and 11.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct CurveRow {
+pub(crate) struct CurveRow {
     /// The clustering or mixture.
     pub method: String,
     /// Number of clusters that it was told; empty if it found the number itself.
@@ -153,7 +153,7 @@ pub struct CurveRow {
 
 impl CurveRow {
     /// A point at (p, d).
-    pub fn new(
+    pub(crate) fn new(
         method: &str,
         clusters: Option<usize>,
         counting: Counting,

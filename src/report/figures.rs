@@ -22,11 +22,11 @@ use crate::stages::schema::{Model, Sample};
 use crate::stages::simulate::{Pose, Trajectory};
 
 /// Explains the tables to whoever opens the folder.
-pub const README: &str = include_str!("figures/README.md");
+pub(crate) const README: &str = include_str!("figures/README.md");
 
 /// Writes the tables of figures into the folder of an experiment.
 #[derive(Debug)]
-pub struct Figures<'a> {
+pub(crate) struct Figures<'a> {
     folder: &'a mut ResultFolder,
 }
 
@@ -35,7 +35,7 @@ impl<'a> Figures<'a> {
     ///
     /// # Errors
     /// If a file cannot be written; so for all that follow.
-    pub fn new(folder: &'a mut ResultFolder) -> Result<Self, FileError> {
+    pub(crate) fn new(folder: &'a mut ResultFolder) -> Result<Self, FileError> {
         folder.write_text("figures/README.md", README)?;
         Ok(Self { folder })
     }
@@ -49,7 +49,7 @@ impl<'a> Figures<'a> {
     }
 
     /// Figure 4: the agent and its sensors in the poses of its parts.
-    pub fn agent(&mut self, agent: &Agent, poses: &[Pose]) -> Result<(), FileError> {
+    pub(crate) fn agent(&mut self, agent: &Agent, poses: &[Pose]) -> Result<(), FileError> {
         let row = |part, kind, [x_m, y_m, z_m]: [f64; 3]| {
             let [x_m, y_m, z_m] = [x_m, y_m, z_m].map(round);
             AgentRow { part, kind, x_m, y_m, z_m }
@@ -67,7 +67,11 @@ impl<'a> Figures<'a> {
     }
 
     /// Figure 5: joint angles about every 0.2 s, of a trajectory for each p with a sample every `interval` (s).
-    pub fn angles(&mut self, trajectories: &[(f64, &Trajectory)], interval: f64) -> Result<(), FileError> {
+    pub(crate) fn angles(
+        &mut self,
+        trajectories: &[(f64, &Trajectory)],
+        interval: f64,
+    ) -> Result<(), FileError> {
         let every = Frames::every(Some(interval));
         let rows = trajectories.iter().flat_map(|&(coordination, trajectory)| {
             let states = trajectory.angles.chunks_exact(trajectory.joints).step_by(every);
@@ -86,7 +90,7 @@ impl<'a> Figures<'a> {
 
     /// Figure 6: a body map of two or three dimensions with the true parts, and with the clusters and joints
     /// of a posterior sample.
-    pub fn map(&mut self, map: &BodyMap, parts: &[usize], sample: &Sample) -> Result<(), FileError> {
+    pub(crate) fn map(&mut self, map: &BodyMap, parts: &[usize], sample: &Sample) -> Result<(), FileError> {
         let row = |kind, index, group, x: &[f64]| MapRow {
             kind,
             index,
@@ -109,7 +113,7 @@ impl<'a> Figures<'a> {
     }
 
     /// Figure 8a: mean ARI of the clusterings that are told the number of clusters.
-    pub fn baselines(&mut self, estimates: &[BaselineEstimate]) -> Result<(), FileError> {
+    pub(crate) fn baselines(&mut self, estimates: &[BaselineEstimate]) -> Result<(), FileError> {
         let rows =
             estimates.iter().map(|&BaselineEstimate { method, clusters, coordination, dimension, ari }| {
                 CurveRow::new(
@@ -124,7 +128,11 @@ impl<'a> Figures<'a> {
     }
 
     /// Figures 7, 8b, 9 and 10: number of parts, ARI and tree for each d.
-    pub fn by_dimension(&mut self, conditions: &Conditions, best: &Conditions) -> Result<(), FileError> {
+    pub(crate) fn by_dimension(
+        &mut self,
+        conditions: &Conditions,
+        best: &Conditions,
+    ) -> Result<(), FileError> {
         let both = [(Counting::AllDraws, conditions), (Counting::BestDraw, best)];
         let of = |model| move |condition: &Condition| condition.model == model;
 
@@ -147,14 +155,18 @@ impl<'a> Figures<'a> {
     }
 
     /// Figure 11: ARI and tree for each p.
-    pub fn by_coordination(&mut self, conditions: &Conditions, best: &Conditions) -> Result<(), FileError> {
+    pub(crate) fn by_coordination(
+        &mut self,
+        conditions: &Conditions,
+        best: &Conditions,
+    ) -> Result<(), FileError> {
         let both = [(Counting::AllDraws, conditions), (Counting::BestDraw, best)];
         self.write("fig11a-ari", curves(&both, |_| true, |conditions, at| conditions.mean_ari(at)))?;
         self.write("fig11b-tree", curves(&both, |_| true, |conditions, at| conditions.tree_rate(&[at])))
     }
 
     /// The picture of every table in the folder, beside it.
-    pub fn draw(self) -> Result<Vec<Picture>, FileError> {
+    pub(crate) fn draw(self) -> Result<Vec<Picture>, FileError> {
         let pictures = plot::render(&self.folder.path().join("figures"))?;
         self.folder.remember(pictures.iter().map(|picture| format!("figures/{}.svg", picture.name)));
         Ok(pictures)

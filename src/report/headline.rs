@@ -11,7 +11,7 @@ use crate::analysis::statistics::rate_difference;
 
 /// The headline of a run.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Headline {
+pub(crate) struct Headline {
     /// What came out, and what the paper reports.
     pub sentence: String,
     /// Names of the lines of the table, then a column for each interpretation of the paper.
@@ -21,7 +21,7 @@ pub struct Headline {
 impl Headline {
     /// The headline among the claims of a run, first that of the interpretation which the run follows; `None` if they do
     /// not have it.
-    pub fn of(rows: &[Row]) -> Option<Self> {
+    pub(crate) fn of(rows: &[Row]) -> Option<Self> {
         let claim = claims().into_iter().find(|claim| claim.id == HEADLINE)?;
         let own: Vec<&Row> =
             rows.iter().filter(|row| row.id == HEADLINE && row.counting == Counting::AllDraws).collect();
@@ -37,7 +37,7 @@ impl Headline {
     }
 
     /// For a terminal.
-    pub fn in_terminal(&self) -> String {
+    pub(crate) fn in_terminal(&self) -> String {
         let width = |column: &Vec<String>| column.iter().map(|cell| cell.chars().count()).max().unwrap_or(0);
         let widths: Vec<usize> = self.columns.iter().map(width).collect();
         let line = |cells: Vec<&str>| {
@@ -49,14 +49,14 @@ impl Headline {
     }
 
     /// For a page in Markdown.
-    pub fn in_markdown(&self) -> String {
+    pub(crate) fn in_markdown(&self) -> String {
         let mut lines: Vec<String> = self.lines().into_iter().map(markdown::row).collect();
         lines.insert(1, markdown::rule(self.columns.len()));
         format!("**{}**\n\n{}", self.sentence, lines.join("\n"))
     }
 
     /// For the report.
-    pub fn in_html(&self) -> Markup {
+    pub(crate) fn in_html(&self) -> Markup {
         let lines = self.lines();
         let (header, body) = lines.split_first().expect("a table has a header");
         html! {
@@ -77,7 +77,7 @@ impl Headline {
 }
 
 /// The text of `claims.md`: the headline, `preamble`, and the table of all claims.
-pub fn claims_page(preamble: &str, rows: &[Row]) -> String {
+pub(crate) fn claims_page(preamble: &str, rows: &[Row]) -> String {
     let headline = Headline::of(rows).map_or(String::new(), |headline| headline.in_markdown() + "\n\n");
     format!("{headline}{preamble}\n\n{}", markdown_table(rows))
 }

@@ -1,15 +1,15 @@
 //! Show what an experiment found: tables and pictures of the paper's figures, the table of claims, and a page.
 
-pub mod claims_table;
-pub mod estimated;
-pub mod figure_rows;
-pub mod figures;
-pub mod headline;
+pub(crate) mod claims_table;
+pub(crate) mod estimated;
+pub(crate) mod figure_rows;
+pub(crate) mod figures;
+pub(crate) mod headline;
 pub mod markdown;
-pub mod numbers;
-pub mod overview;
-pub mod page;
+pub(crate) mod numbers;
+pub(crate) mod overview;
+pub(crate) mod page;
 pub mod plot;
-pub mod ranges;
-pub mod text_tree;
-pub mod viewer;
+pub(crate) mod ranges;
+pub(crate) mod text_tree;
+pub(crate) mod viewer;

@@ -8,7 +8,11 @@ use super::ranges;
 use crate::analysis::published::HEADLINE;
 
 /// The claims of a run in one picture, a line each, with `mark` before its verdict.
-pub fn overview(rows: &[Row], class: &dyn Fn(&Row) -> String, mark: &dyn Fn(&Row) -> &'static str) -> Markup {
+pub(crate) fn overview(
+    rows: &[Row],
+    class: &dyn Fn(&Row) -> String,
+    mark: &dyn Fn(&Row) -> &'static str,
+) -> Markup {
     // The headline has a sentence and a table of its own.
     let others = rows.iter().filter(|row| row.id != HEADLINE);
     let tested = others.filter_map(|row| Some((row, ranges::drawing(row)?)));

@@ -57,7 +57,7 @@ impl Axis {
 }
 
 /// The drawing of a row; `None` without an accepted range.
-pub fn drawing(row: &Row) -> Option<Markup> {
+pub(crate) fn drawing(row: &Row) -> Option<Markup> {
     let (unit, accepted) = (row.unit?, row.accepted()?);
     let axis = Axis::new(unit, accepted);
     let words = words(row, accepted);
@@ -133,7 +133,7 @@ fn dot((x, side): (f64, Side)) -> Markup {
 }
 
 /// What the marks of all drawings mean.
-pub fn legend() -> Markup {
+pub(crate) fn legend() -> Markup {
     let key = |mark: Markup, words: &str| {
         html! {
             span { svg.range width="36" height="26" viewBox="0 0 36 26" aria-hidden="true" { (mark) } " " (words) }

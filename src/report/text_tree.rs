@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 /// The lines of a tree. `edges` are pairs of nodes, each with a note; `name` gives the words for a node. The node with most
 /// edges is the root, the first of equal ones; nodes that no edge reaches follow, each a line.
-pub fn text_tree(
+pub(crate) fn text_tree(
     nodes: usize,
     edges: &[(usize, usize, String)],
     name: &dyn Fn(usize) -> String,

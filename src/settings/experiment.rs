@@ -48,6 +48,6 @@ impl ExperimentSettings {
 }
 
 /// Whether a list is not empty, rises strictly, and has at most [`MAX_LISTED`] values.
-pub fn rising<T: PartialOrd>(values: &[T]) -> bool {
+pub(super) fn rising<T: PartialOrd>(values: &[T]) -> bool {
     (1..=MAX_LISTED).contains(&values.len()) && values.windows(2).all(|pair| pair[0] < pair[1])
 }

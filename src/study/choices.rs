@@ -8,7 +8,7 @@ use toml::{Table, Value};
 use crate::settings::{PAPER, Settings};
 
 /// Lays `over` on `base`, section by section.
-pub fn merge(base: &mut Table, over: &Table) {
+pub(super) fn merge(base: &mut Table, over: &Table) {
     for (name, value) in over {
         match (base.get_mut(name), value) {
             (Some(Value::Table(base)), Value::Table(over)) => merge(base, over),
@@ -20,7 +20,7 @@ pub fn merge(base: &mut Table, over: &Table) {
 }
 
 /// `section.key = value` for every setting of a table.
-pub fn flat(table: &Table) -> Vec<String> {
+pub(super) fn flat(table: &Table) -> Vec<String> {
     let mut all = Vec::new();
     for (name, value) in table {
         match value {
@@ -32,13 +32,13 @@ pub fn flat(table: &Table) -> Vec<String> {
 }
 
 /// The settings of a table in a line, without their sections.
-pub fn short(table: &Table) -> String {
+pub(super) fn short(table: &Table) -> String {
     let short = |line: String| line.split_once('.').map_or(line.clone(), |(_, short)| short.to_owned());
     flat(table).into_iter().map(short).collect::<Vec<_>>().join(", ")
 }
 
 /// The value of a setting `section.key`, as settings files write it.
-pub fn value_of(settings: &Settings, key: &str) -> Option<String> {
+pub(super) fn value_of(settings: &Settings, key: &str) -> Option<String> {
     let own = serde_json::to_value(settings).expect("settings are plain data");
     // Settings of a random movement do not write the rhythm, which has defaults, too.
     let defaults: Table = PAPER.parse().expect("reproduce/paper.toml is TOML");
@@ -50,7 +50,7 @@ pub fn value_of(settings: &Settings, key: &str) -> Option<String> {
 /// The gains of a torque, by what they do to the body that they are for.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Gains {
+pub(crate) struct Gains {
     /// Natural frequency of a part that swings about its end, rad/s: √(stiffness / (m L² / 3)).
     pub frequency: f64,
     /// Damping times the step over the axial inertia of a part, m r² / 2; beyond 1 a spin is overshot in one step.
@@ -59,7 +59,7 @@ pub struct Gains {
 
 impl Gains {
     /// `[motion]` for a body, in three digits.
-    pub fn settings(self, settings: &Settings) -> Table {
+    pub(crate) fn settings(self, settings: &Settings) -> Table {
         let Settings { agent, physics, .. } = settings;
         let mass = agent.density * PI * agent.part_radius.powi(2) * agent.part_length;
         let stiffness = self.frequency.powi(2) * mass * agent.part_length.powi(2) / 3.0;
@@ -75,7 +75,7 @@ impl Gains {
     }
 
     /// What they are, in words.
-    pub fn in_words(self) -> String {
+    pub(crate) fn in_words(self) -> String {
         let Self { frequency, spin_damping } = self;
         format!("natural frequency {frequency} rad/s, damping × step = {spin_damping} × axial inertia")
     }

@@ -14,10 +14,10 @@ use crate::analysis::published::{Claim, Experiment, Measure};
 use crate::tasks::error::ExperimentError;
 
 /// The name of the base among configurations that vary one factor at a time.
-pub const BASE: &str = "default";
+pub(super) const BASE: &str = "default";
 
 /// Columns of configurations.csv beside those of the factors.
-pub const COLUMNS: [&str; 11] = [
+pub(super) const COLUMNS: [&str; 11] = [
     "configuration",
     "name",
     "movement",
@@ -34,7 +34,7 @@ pub const COLUMNS: [&str; 11] = [
 /// A study: what is run, and how it is judged.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Design {
+pub(crate) struct Design {
     /// Where it was read, for messages.
     #[serde(skip)]
     pub origin: String,
@@ -77,7 +77,7 @@ pub struct Design {
 /// How factors make configurations.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Vary {
+pub(crate) enum Vary {
     /// The base, and one option of one factor at a time.
     OneAtATime,
     /// All combinations of all options.
@@ -87,7 +87,7 @@ pub enum Vary {
 /// A section of the page.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Section {
+pub(crate) enum Section {
     /// Each claim's value by each configuration.
     Values,
     /// How far that is from the first configuration's, paired by simulation.
@@ -109,7 +109,7 @@ pub enum Section {
 /// A claim that configurations are judged by.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct JudgedClaim {
+pub(crate) struct JudgedClaim {
     /// Its short name in `reproduce/published.toml`.
     pub id: String,
     /// The experiment that it is judged by.
@@ -127,7 +127,7 @@ pub struct JudgedClaim {
 /// A named configuration.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct NamedConfiguration {
+pub(crate) struct NamedConfiguration {
     /// Its name in tables and pictures.
     pub name: String,
     /// What it has instead of the base's values.
@@ -138,7 +138,7 @@ pub struct NamedConfiguration {
 /// An open setting, or several that belong together.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Factor {
+pub(crate) struct Factor {
     /// Name in tables, pictures and their files.
     pub name: String,
     /// What it is, as a heading; its name if it is empty.
@@ -163,7 +163,7 @@ pub struct Factor {
 /// A value of an open setting.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Choice {
+pub(crate) struct Choice {
     /// Name in tables and pictures; its settings in a line if it is empty.
     #[serde(default)]
     pub label: String,
@@ -181,7 +181,7 @@ pub struct Choice {
 /// The next round of a search.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Next {
+pub(crate) struct Next {
     /// Number of configurations that go on, the best first.
     pub keep: usize,
     /// What the next round lays over the base: usually more simulations.
@@ -193,7 +193,7 @@ impl Design {
     ///
     /// # Errors
     /// If it is not a design, or names what is not there. The message names the file, the key, and what is allowed.
-    pub fn parse(source: &DesignText) -> Result<Self, ExperimentError> {
+    pub(crate) fn parse(source: &DesignText) -> Result<Self, ExperimentError> {
         let wrong = |message: String| ExperimentError::design(&source.origin, message);
         let mut design: Self =
             toml::from_str(&source.text).map_err(|error| wrong(reason(&source.text, &error)))?;
@@ -227,7 +227,7 @@ impl Design {
     }
 
     /// The seeds of all its movements.
-    pub fn seeds(&self) -> RangeInclusive<u64> {
+    pub(crate) fn seeds(&self) -> RangeInclusive<u64> {
         match self.draws {
             Some(draws) => self.seed + 1..=self.seed + draws.movements as u64,
             None => self.seed..=self.seed,
@@ -235,7 +235,7 @@ impl Design {
     }
 
     /// Whether the page has a section.
-    pub fn has(&self, section: Section) -> bool {
+    pub(crate) fn has(&self, section: Section) -> bool {
         self.sections.contains(&section)
     }
 }
@@ -255,13 +255,13 @@ fn scored() -> Vec<JudgedClaim> {
 
 impl JudgedClaim {
     /// The claim.
-    pub fn find<'a>(&self, claims: &'a [Claim]) -> Option<&'a Claim> {
+    pub(crate) fn find<'a>(&self, claims: &'a [Claim]) -> Option<&'a Claim> {
         let same = |claim: &&Claim| claim.id == self.id && claim.experiments.contains(&self.experiment);
         claims.iter().find(same).filter(|claim| claim.accept.is_some() && is_of_samples(&claim.measure))
     }
 
     /// Its label in one line.
-    pub fn name(&self) -> String {
+    pub(crate) fn name(&self) -> String {
         self.label.replace('\n', " ")
     }
 }
@@ -279,12 +279,12 @@ fn is_of_samples(measure: &Measure) -> bool {
 
 impl Factor {
     /// Names of its options.
-    pub fn labels(&self) -> impl Iterator<Item = &str> {
+    pub(crate) fn labels(&self) -> impl Iterator<Item = &str> {
         self.options.iter().map(|option| option.label.as_str())
     }
 
     /// What it is, as a heading.
-    pub fn heading(&self) -> &str {
+    pub(crate) fn heading(&self) -> &str {
         if self.title.is_empty() { &self.name } else { &self.title }
     }
 }

@@ -13,7 +13,7 @@ use super::levels::{DrawCounts, Level, SharedStages};
 
 /// A drawn configuration.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Drawn {
+pub(super) struct Drawn {
     /// What it shares.
     pub places: SharedStages,
     /// The option of each factor of the design.
@@ -21,7 +21,7 @@ pub struct Drawn {
 }
 
 /// All drawn configurations, those that share a movement next to each other, no two alike.
-pub fn drawn(design: &Design, draws: DrawCounts) -> Vec<Drawn> {
+pub(super) fn drawn(design: &Design, draws: DrawCounts) -> Vec<Drawn> {
     let DrawCounts { movements, distances, maps, inferences } = draws;
     let mut all: Vec<Drawn> = Vec::new();
     let mut known = HashSet::new();

@@ -17,7 +17,7 @@ use crate::report::plot::specifications::{Choices, Curve, Point};
 
 /// In what share of a group of configurations a claim holds: a row of `shares.csv`.
 #[derive(Debug, Clone, Serialize)]
-pub struct ShareRow {
+pub(super) struct ShareRow {
     /// The group.
     pub group: String,
     /// Short name of the claim, or `all together`.
@@ -38,7 +38,7 @@ pub struct ShareRow {
 
 /// The share of a claim's variance that a factor decides, or two together: a row of `variance.csv`.
 #[derive(Debug, Clone, Serialize)]
-pub struct VarianceRow {
+pub(super) struct VarianceRow {
     /// Short name of the claim.
     pub claim: String,
     /// The factor, or the first of a pair.
@@ -56,7 +56,7 @@ pub struct VarianceRow {
 }
 
 /// What all configurations say together.
-pub struct Evaluation<'a> {
+pub(super) struct Evaluation<'a> {
     /// All results.
     pub results: &'a Results,
     /// Of each claim of the design, in its order.
@@ -77,16 +77,16 @@ struct Member<'a> {
 }
 
 /// Name of all claims together.
-pub const TOGETHER: &str = "all together";
+pub(super) const TOGETHER: &str = "all together";
 
 impl<'a> Evaluation<'a> {
     /// Whether the page of a design shows any of it.
-    pub fn is_asked_for(design: &Design) -> bool {
+    pub(super) fn is_asked_for(design: &Design) -> bool {
         [Section::Shares, Section::Variance, Section::Curves].into_iter().any(|section| design.has(section))
     }
 
     /// Evaluates all configurations.
-    pub fn new(results: &'a Results) -> Self {
+    pub(super) fn new(results: &'a Results) -> Self {
         let published = claims();
         let design = &results.design;
         let found =
@@ -109,7 +109,7 @@ impl<'a> Evaluation<'a> {
 
     /// Names and sizes of the groups that shares are of: all, the resolved ones, and those with each option of the factors that the
     /// design groups by.
-    pub fn groups(&self) -> Vec<(String, usize)> {
+    pub(super) fn groups(&self) -> Vec<(String, usize)> {
         self.grouped().into_iter().map(|(name, members)| (name, members.len())).collect()
     }
 
@@ -239,7 +239,7 @@ impl<'a> Evaluation<'a> {
     }
 
     /// The specification curve of a claim.
-    pub fn curve(&self, at: usize) -> Curve {
+    pub(super) fn curve(&self, at: usize) -> Curve {
         let claim = &self.claims[at];
         let mut with = self.with_value(at);
         with.sort_by(|a, b| {

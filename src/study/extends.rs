@@ -9,7 +9,7 @@ use crate::settings::read_toml;
 use crate::tasks::error::ExperimentError;
 
 /// The designs that the program brings: those of `reproduce/`, by name.
-pub const BUNDLED: [(&str, &str); 7] = [
+pub(super) const BUNDLED: [(&str, &str); 7] = [
     ("ablation", include_str!("../../reproduce/ablation.toml")),
     ("momentum", include_str!("../../reproduce/momentum.toml")),
     ("multiverse", include_str!("../../reproduce/multiverse.toml")),
@@ -24,7 +24,7 @@ const MOST_EXTENDED: usize = 8;
 
 /// A design as a text that depends on no other file.
 #[derive(Debug, Clone, PartialEq)]
-pub struct DesignText {
+pub(crate) struct DesignText {
     /// TOML. Where the design extends no other and its seed is its own, this is the file itself, with its comments.
     pub text: String,
     /// Where it is from, for messages.
@@ -37,7 +37,7 @@ impl DesignText {
     ///
     /// # Errors
     /// If there is no such file or name, or the text is not TOML.
-    pub fn read(design: &Path, seed: Option<u64>) -> Result<Self, ExperimentError> {
+    pub(crate) fn read(design: &Path, seed: Option<u64>) -> Result<Self, ExperimentError> {
         let (text, origin) = find(design)?;
         let mut table = parse(&text, &origin)?;
         let extends = table.contains_key("extends");
@@ -104,7 +104,7 @@ fn parse(text: &str, origin: &str) -> Result<Table, ExperimentError> {
 }
 
 /// Why a text is no design, with the line.
-pub fn reason(text: &str, error: &toml::de::Error) -> String {
+pub(super) fn reason(text: &str, error: &toml::de::Error) -> String {
     let line = error.span().map(|span| 1 + text[..span.start].matches('\n').count());
     let line = line.map_or(String::new(), |line| format!("line {line}: "));
     format!("{line}{}", error.message())

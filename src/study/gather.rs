@@ -28,7 +28,7 @@ const PAGE: &str = "study.md";
 ///
 /// # Errors
 /// If `out` holds another design or lacks a movement, or a file cannot be written.
-pub fn gather(
+pub(crate) fn gather(
     design: Design,
     text: &str,
     plan: &[Configuration],
@@ -75,7 +75,7 @@ fn settings_file(settings: &Settings) -> String {
 ///
 /// # Errors
 /// If tables of further configurations are there, which would be lost.
-pub fn is_finished(text: &str, plan: &[Configuration], out: &Path) -> Result<bool, ExperimentError> {
+pub(crate) fn is_finished(text: &str, plan: &[Configuration], out: &Path) -> Result<bool, ExperimentError> {
     if !is_study(out) {
         return Ok(false);
     }
@@ -93,7 +93,7 @@ pub fn is_finished(text: &str, plan: &[Configuration], out: &Path) -> Result<boo
 }
 
 /// Whether a folder holds a finished study.
-pub fn is_study(folder: &Path) -> bool {
+pub(crate) fn is_study(folder: &Path) -> bool {
     folder.join(DESIGN).is_file() && Results::are_in(folder)
 }
 
@@ -101,7 +101,7 @@ pub fn is_study(folder: &Path) -> bool {
 ///
 /// # Errors
 /// If they are not what a study wrote, or a file cannot be written.
-pub fn redraw(folder: &Path) -> Result<(), ExperimentError> {
+pub(crate) fn redraw(folder: &Path) -> Result<(), ExperimentError> {
     let path = folder.join(DESIGN);
     let source = DesignText { text: read_text(&path)?, origin: path.display().to_string() };
     let design = Design::parse(&source)?;

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 /// How many are drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct DrawCounts {
+pub(crate) struct DrawCounts {
     /// DrawCounts of the factors at the level of the movement.
     pub movements: usize,
     /// For each movement, draws of the factors at the level of the distances.
@@ -23,7 +23,7 @@ fn one() -> usize {
 
 impl DrawCounts {
     /// Configurations at most, if that is a number.
-    pub fn count(self) -> Option<usize> {
+    pub(crate) fn count(self) -> Option<usize> {
         let Self { movements, distances, maps, inferences } = self;
         [movements, distances, maps, inferences].into_iter().try_fold(1_usize, usize::checked_mul)
     }
@@ -32,7 +32,7 @@ impl DrawCounts {
 /// What a factor decides, and all that comes after it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Level {
+pub(crate) enum Level {
     /// How the body moves.
     Movement,
     /// What it feels, and the distances between its sensors.
@@ -45,7 +45,7 @@ pub enum Level {
 
 /// Numbers of the movement, the matrix of distances and the body maps of a configuration; those with the same number share it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct SharedStages {
+pub(crate) struct SharedStages {
     /// Number of the movement, from 1.
     pub movement: usize,
     /// Number of the matrix of distances, from 1.

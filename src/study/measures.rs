@@ -13,7 +13,7 @@ use crate::stages::schema::Model;
 /// What is measured of a condition.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Measure {
+pub(super) enum Measure {
     /// Mean number of estimated parts.
     Parts,
     /// Mean adjusted Rand index.
@@ -48,7 +48,7 @@ impl Measure {
 
 /// A measure of a condition by a configuration: a row of `measures.csv`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct MeasureRow {
+pub(super) struct MeasureRow {
     /// Number of the configuration.
     pub configuration: usize,
     /// p.
@@ -77,21 +77,21 @@ pub struct MeasureRow {
 }
 
 /// A configuration's samples by condition.
-pub struct Measured {
+pub(super) struct Measured {
     all: Conditions,
     best: Conditions,
 }
 
 impl Measured {
     /// Of what a configuration gave.
-    pub fn new(configuration: &Configuration, outcome: &Outcome) -> Self {
+    pub(super) fn new(configuration: &Configuration, outcome: &Outcome) -> Self {
         let all = outcome.conditions(&configuration.settings, |_| true);
         Self { best: all.best(), all }
     }
 
     /// A row for each condition of the first configuration and each measure. A configuration that fails has no conditions
     /// itself.
-    pub fn rows(&self, number: usize, outcome: &Outcome, first: &Self) -> Vec<MeasureRow> {
+    pub(super) fn rows(&self, number: usize, outcome: &Outcome, first: &Self) -> Vec<MeasureRow> {
         let mut rows = Vec::new();
         for condition in first.all.all() {
             let failures = outcome.failures.iter();

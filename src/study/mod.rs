@@ -20,9 +20,9 @@ mod results;
 mod shard;
 mod work;
 
-pub use self::design::Design;
-pub use self::extends::DesignText;
-pub use self::gather::{gather, is_finished, is_study, redraw};
-pub use self::plan::{Selection, plan};
-pub use self::shard::Shard;
-pub use self::work::run;
+pub(crate) use self::design::Design;
+pub(crate) use self::extends::DesignText;
+pub(crate) use self::gather::{gather, is_finished, is_study, redraw};
+pub(crate) use self::plan::{Selection, plan};
+pub(crate) use self::shard::Shard;
+pub(crate) use self::work::run;

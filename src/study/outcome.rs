@@ -10,7 +10,7 @@ use crate::stages::simulate::Resolution;
 
 /// What a configuration gave in its `experiment.simulations` simulations.
 #[derive(Debug, Clone, Default)]
-pub struct Outcome {
+pub(super) struct Outcome {
     /// All evaluated samples of the tasks that did not fail.
     pub records: Vec<Record>,
     /// Tasks that failed: unstable movement, or distances without a map of the dimensions.
@@ -21,7 +21,7 @@ pub struct Outcome {
 
 /// A task that failed.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Failure {
+pub(super) struct Failure {
     /// p.
     pub coordination: f64,
     /// Why.
@@ -30,24 +30,24 @@ pub struct Failure {
 
 impl Outcome {
     /// Whether nothing failed and the physics step resolves all movements.
-    pub fn is_resolved(&self) -> bool {
+    pub(super) fn is_resolved(&self) -> bool {
         self.failures.is_empty() && self.resolution.is_resolved()
     }
 
     /// Why the first failure failed; empty without one.
-    pub fn first_reason(&self) -> String {
+    pub(super) fn first_reason(&self) -> String {
         self.failures.first().map_or(String::new(), |failure| failure.reason.clone())
     }
 
     /// The samples that `counts` keeps, by condition, with intervals over simulations.
-    pub fn conditions(&self, settings: &Settings, counts: impl Fn(&Record) -> bool) -> Conditions {
+    pub(super) fn conditions(&self, settings: &Settings, counts: impl Fn(&Record) -> bool) -> Conditions {
         let records = self.records.iter().copied().filter(counts).collect();
         Conditions::new(records, settings.experiment.simulations, settings.experiment.seed)
     }
 
     /// The samples that belong to an experiment; none if a task failed, for what some simulations gave says nothing of a
     /// configuration in which others failed.
-    pub fn evidence(&self, experiment: Experiment, settings: &Settings) -> Evidence {
+    pub(super) fn evidence(&self, experiment: Experiment, settings: &Settings) -> Evidence {
         let belongs = |record: &Record| match experiment {
             Experiment::Exp1 => {
                 record.coordination == settings.motion.coordination

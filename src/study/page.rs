@@ -18,7 +18,7 @@ use crate::report::plot::{self, PlotError};
 use crate::tasks::seeds::used_before;
 
 /// The page.
-pub fn text(results: &Results, evaluation: Option<&Evaluation>, ranking: Option<&Ranking>) -> String {
+pub(super) fn text(results: &Results, evaluation: Option<&Evaluation>, ranking: Option<&Ranking>) -> String {
     let design = &results.design;
     let mut lines = vec![format!("# {}\n", design.title)];
     let mut sections = Vec::new();
@@ -81,7 +81,7 @@ fn provenance(results: &Results) -> String {
 ///
 /// # Errors
 /// If one cannot be drawn.
-pub fn pictures(
+pub(super) fn pictures(
     results: &Results,
     evaluation: Option<&Evaluation>,
 ) -> Result<Vec<(String, String)>, FileError> {

@@ -15,7 +15,7 @@ use crate::tasks::error::ExperimentError;
 
 /// One way to run the experiments.
 #[derive(Debug, Clone)]
-pub struct Configuration {
+pub(crate) struct Configuration {
     /// Its number, from 1.
     pub number: usize,
     /// Its name.
@@ -32,7 +32,7 @@ pub struct Configuration {
 
 /// The configurations that `--only` selects: those of a number, a name, or a factor.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Selection(String);
+pub(crate) struct Selection(String);
 
 impl FromStr for Selection {
     type Err = std::convert::Infallible;
@@ -46,7 +46,7 @@ impl FromStr for Selection {
 ///
 /// # Errors
 /// If the settings of one cannot be used; the message names it.
-pub fn plan(design: &Design) -> Result<Vec<Configuration>, ExperimentError> {
+pub(crate) fn plan(design: &Design) -> Result<Vec<Configuration>, ExperimentError> {
     let mut all = match (design.vary, design.draws) {
         (_, Some(draws)) => {
             let drawn = drawn(design, draws).into_iter().enumerate();
@@ -226,7 +226,7 @@ impl Selection {
     ///
     /// # Errors
     /// If it names none.
-    pub fn of(
+    pub(crate) fn of(
         &self,
         design: &Design,
         all: Vec<Configuration>,
@@ -262,7 +262,7 @@ impl Selection {
 
 impl Configuration {
     /// What it has instead of the base's values, in a line.
-    pub fn in_a_line(&self) -> String {
+    pub(crate) fn in_a_line(&self) -> String {
         flat(&self.changes).join(", ")
     }
 }

@@ -11,7 +11,7 @@ use crate::analysis::claims::Verdict;
 
 /// A configuration and its score: a row of `ranking.csv`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct RankRow {
+pub(super) struct RankRow {
     /// Its place, from 1.
     pub rank: usize,
     /// Its number.
@@ -33,14 +33,14 @@ pub struct RankRow {
 }
 
 /// All configurations by their score, those that the physics step resolves first.
-pub struct Ranking {
+pub(super) struct Ranking {
     /// The best first.
     pub rows: Vec<RankRow>,
 }
 
 impl Ranking {
     /// Of a finished study. Of equal scores the earlier configuration stays first.
-    pub fn of(results: &Results) -> Self {
+    pub(super) fn of(results: &Results) -> Self {
         let scored: Vec<(usize, &JudgedClaim)> = scored(&results.design);
         let mut rows: Vec<RankRow> = Vec::new();
         for (place, one) in results.configurations.iter().enumerate() {
@@ -73,7 +73,7 @@ impl Ranking {
 
     /// Names and texts of best.toml, the settings of the best resolved configuration, and of next.toml, the design of the next
     /// round, where there are such.
-    pub fn files(&self, results: &Results) -> Vec<(&'static str, String)> {
+    pub(super) fn files(&self, results: &Results) -> Vec<(&'static str, String)> {
         let Ok(plan) = plan(&results.design) else { return Vec::new() };
         let changes = |row: &RankRow| {
             plan.iter().find(|one| one.number == row.configuration).map(|one| one.changes.clone())
@@ -121,7 +121,7 @@ fn in_toml(table: &Table) -> String {
 }
 
 /// The claims that count, with their places in the design.
-pub fn scored(design: &Design) -> Vec<(usize, &JudgedClaim)> {
+pub(super) fn scored(design: &Design) -> Vec<(usize, &JudgedClaim)> {
     design.claims.iter().enumerate().filter(|(_, judged)| judged.weight.is_some()).collect()
 }
 

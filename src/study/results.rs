@@ -27,7 +27,7 @@ const HEADLINE_SAMPLES: &str = "headline.csv";
 
 /// What a configuration is, and whether the physics step resolves it: a row of `configurations.csv`.
 #[derive(Debug, Clone, PartialEq)]
-pub struct ConfigurationRow {
+pub(super) struct ConfigurationRow {
     /// Its number, from 1.
     pub number: usize,
     /// Its name.
@@ -52,7 +52,7 @@ pub struct ConfigurationRow {
 
 /// A claim by a configuration: a row of `study.csv`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct ClaimRow {
+pub(super) struct ClaimRow {
     /// Number of the configuration.
     pub configuration: usize,
     /// Its name.
@@ -84,7 +84,7 @@ pub struct ClaimRow {
 
 /// The samples of a simulation at the condition of the headline: a row of `headline.csv`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub struct HeadlineRow {
+pub(super) struct HeadlineRow {
     /// Number of the configuration.
     pub configuration: usize,
     /// The simulation, from 1.
@@ -96,7 +96,7 @@ pub struct HeadlineRow {
 }
 
 /// What a study gave.
-pub struct Results {
+pub(super) struct Results {
     /// Its design.
     pub design: Design,
     /// Revision of the program that ran it.
@@ -112,7 +112,7 @@ pub struct Results {
 }
 
 /// Fills [`Results`] with one outcome after the other.
-pub struct Gathering {
+pub(super) struct Gathering {
     results: Results,
     published: Vec<Claim>,
     /// The first configuration: its evidence by experiment, and its measures.
@@ -121,7 +121,7 @@ pub struct Gathering {
 
 impl Gathering {
     /// Of a design, by this program.
-    pub fn new(design: Design) -> Self {
+    pub(super) fn new(design: Design) -> Self {
         let results = Results {
             design,
             revision: env!("BODYSCHEMA_REVISION").to_owned(),
@@ -134,7 +134,7 @@ impl Gathering {
     }
 
     /// Adds what a configuration gave; the first that is added is that from which changes are measured.
-    pub fn add(&mut self, configuration: &Configuration, outcome: &Outcome) {
+    pub(super) fn add(&mut self, configuration: &Configuration, outcome: &Outcome) {
         let evidence: BTreeMap<Experiment, Evidence> = [Experiment::Exp1, Experiment::Exp2]
             .map(|experiment| (experiment, outcome.evidence(experiment, &configuration.settings)))
             .into();
@@ -162,7 +162,7 @@ impl Gathering {
     }
 
     /// All that was added.
-    pub fn finish(self) -> Results {
+    pub(super) fn finish(self) -> Results {
         self.results
     }
 }
@@ -284,7 +284,7 @@ impl Results {
     ///
     /// # Errors
     /// If one cannot be written.
-    pub fn write(&self, folder: &mut ResultFolder) -> Result<(), FileError> {
+    pub(super) fn write(&self, folder: &mut ResultFolder) -> Result<(), FileError> {
         folder.write_rows(CONFIGURATIONS, self.configurations.iter().map(|row| row.cells(&self.design)))?;
         folder.write_rows(CLAIMS, &self.claims)?;
         if self.design.has(Section::Factors) {
@@ -297,7 +297,7 @@ impl Results {
     }
 
     /// Whether a folder has the tables of a study.
-    pub fn are_in(folder: &Path) -> bool {
+    pub(super) fn are_in(folder: &Path) -> bool {
         [CONFIGURATIONS, CLAIMS].iter().all(|name| folder.join(name).is_file())
     }
 
@@ -305,7 +305,7 @@ impl Results {
     ///
     /// # Errors
     /// If the table cannot be read.
-    pub fn numbers_in(folder: &Path) -> Result<Vec<usize>, FileError> {
+    pub(super) fn numbers_in(folder: &Path) -> Result<Vec<usize>, FileError> {
         let path = folder.join(CONFIGURATIONS);
         let rows: Vec<HashMap<String, String>> = read_rows(&path)?;
         let number = |row: &HashMap<String, String>| row.get("configuration")?.parse().ok();
@@ -317,7 +317,7 @@ impl Results {
     ///
     /// # Errors
     /// If one cannot be read or is not of this design.
-    pub fn read(folder: &Path, design: Design, revision: String) -> Result<Self, FileError> {
+    pub(super) fn read(folder: &Path, design: Design, revision: String) -> Result<Self, FileError> {
         let path = folder.join(CONFIGURATIONS);
         let rows: Vec<HashMap<String, String>> = read_rows(&path)?;
         let configurations: Option<Vec<_>> =
@@ -340,7 +340,7 @@ impl Results {
     }
 
     /// The claims of a configuration, by its place in the table, in the order of the design.
-    pub fn claims_of(&self, place: usize) -> &[ClaimRow] {
+    pub(super) fn claims_of(&self, place: usize) -> &[ClaimRow] {
         let count = self.design.claims.len();
         &self.claims[place * count..(place + 1) * count]
     }

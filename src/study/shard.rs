@@ -4,17 +4,17 @@ use std::str::FromStr;
 
 /// Every `of`-th piece of the work, beginning with the `index`-th, from 1.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Shard {
+pub(crate) struct Shard {
     index: usize,
     of: usize,
 }
 
 impl Shard {
     /// All of it.
-    pub const WHOLE: Self = Self { index: 1, of: 1 };
+    pub(crate) const WHOLE: Self = Self { index: 1, of: 1 };
 
     /// Whether it has the piece of work at this place of a list, from 0.
-    pub fn has(self, place: usize) -> bool {
+    pub(crate) fn has(self, place: usize) -> bool {
         place % self.of == self.index - 1
     }
 }

@@ -28,17 +28,22 @@ use crate::tasks::progress::progress;
 use crate::tasks::task::{Keep, Task, by_movement};
 
 /// Key of the checkpoints. The names of tasks already hash the settings that their results depend on.
-pub const KEY: &str = "study";
+pub(super) const KEY: &str = "study";
 
 /// Where the design is kept beside the results.
-pub const DESIGN: &str = "design.toml";
+pub(super) const DESIGN: &str = "design.toml";
 
 /// Runs what is left of the configurations, or of one shard of them. What each movement gave goes to `out`/checkpoints. A
 /// configuration that fails is a result.
 ///
 /// # Errors
 /// If `out` holds results of another design, or a file cannot be written.
-pub fn run(text: &str, plan: &[Configuration], shard: Shard, out: &Path) -> Result<(), ExperimentError> {
+pub(crate) fn run(
+    text: &str,
+    plan: &[Configuration],
+    shard: Shard,
+    out: &Path,
+) -> Result<(), ExperimentError> {
     keep_design(text, out)?;
     let work = StudyWork::new(plan, Checkpoints::new(out, &KEY));
     let left: Vec<&Movement> =
@@ -85,7 +90,7 @@ fn keep_design(text: &str, out: &Path) -> Result<(), ExperimentError> {
 ///
 /// # Errors
 /// If they are not.
-pub fn check_design(text: &str, out: &Path) -> Result<(), ExperimentError> {
+pub(super) fn check_design(text: &str, out: &Path) -> Result<(), ExperimentError> {
     let path = out.join(DESIGN);
     if read_text(&path)? == text {
         return Ok(());
@@ -95,7 +100,7 @@ pub fn check_design(text: &str, out: &Path) -> Result<(), ExperimentError> {
 }
 
 /// All work of some configurations, by movement.
-pub struct StudyWork {
+pub(super) struct StudyWork {
     checkpoints: Checkpoints,
     movements: Vec<Movement>,
     /// Of each configuration: its tasks, with the movement that each belongs to and its p.
@@ -133,7 +138,7 @@ type StoredSample = (usize, usize, usize, Option<f64>, f64, bool, bool);
 
 impl StudyWork {
     /// The work of some configurations, and what was finished of it.
-    pub fn new(plan: &[Configuration], checkpoints: Checkpoints) -> Self {
+    pub(super) fn new(plan: &[Configuration], checkpoints: Checkpoints) -> Self {
         let (mut tasks, mut of) = (Vec::new(), Vec::new());
         for Configuration { settings, .. } in plan {
             let first = tasks.len();
@@ -206,7 +211,11 @@ impl StudyWork {
     ///
     /// # Errors
     /// If a movement is not finished.
-    pub fn outcomes(&self, out: &Path, mut take: impl FnMut(usize, Outcome)) -> Result<(), ExperimentError> {
+    pub(super) fn outcomes(
+        &self,
+        out: &Path,
+        mut take: impl FnMut(usize, Outcome),
+    ) -> Result<(), ExperimentError> {
         let missing = self.movements.iter().filter(|movement| !self.is_finished(movement)).count();
         if missing > 0 {
             let message = format!(
@@ -246,7 +255,7 @@ impl StudyWork {
     ///
     /// # Errors
     /// If it cannot be removed.
-    pub fn clear(&self) -> Result<(), FileError> {
+    pub(super) fn clear(&self) -> Result<(), FileError> {
         self.checkpoints.clear()
     }
 }

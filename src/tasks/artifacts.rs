@@ -12,7 +12,7 @@ use crate::stages::body_map::BodyMaps;
 
 /// What is known of a body whose files are results.
 #[derive(Debug, Clone)]
-pub struct Artifacts {
+pub(crate) struct Artifacts {
     /// How well its sensors could be mapped.
     pub facts: Facts,
     /// Its files, within the folder of results.
@@ -20,7 +20,7 @@ pub struct Artifacts {
 }
 
 /// Where the files of one body are.
-pub struct ArtifactFiles<'a> {
+pub(super) struct ArtifactFiles<'a> {
     /// The folder of results.
     pub out: &'a Path,
     /// Finished work.
@@ -41,7 +41,7 @@ impl ArtifactFiles<'_> {
     ///
     /// # Errors
     /// If one cannot be written.
-    pub fn write(&self, mapped: Mapped, with_distances: bool) -> Result<(Body, Artifacts), FileError> {
+    pub(super) fn write(&self, mapped: Mapped, with_distances: bool) -> Result<(Body, Artifacts), FileError> {
         let Mapped { body, distances, facts } = mapped;
         let folder = self.out.join(self.name);
         let mut names = vec!["labels.csv".to_owned(), "tree.csv".to_owned()];
@@ -62,7 +62,7 @@ impl ArtifactFiles<'_> {
     }
 
     /// The body that an earlier run with these settings wrote, if its files are still what they were.
-    pub fn recall(&self, settings: &Settings) -> Option<(Body, Artifacts)> {
+    pub(super) fn recall(&self, settings: &Settings) -> Option<(Body, Artifacts)> {
         let finished: MappedFiles = self.checkpoints.recall(&format!("{}/body", self.name))?;
         let folder = self.out.join(self.name);
         for (name, hash) in &finished.files {

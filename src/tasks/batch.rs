@@ -26,7 +26,7 @@ use crate::stages::simulate::{Resolution, Trajectory};
 
 /// What a task found.
 #[derive(Debug, Clone, Default)]
-pub struct TaskOutput {
+pub(crate) struct TaskOutput {
     /// All draws, evaluated, by condition.
     pub records: Vec<Record>,
     /// Of each condition the draw of highest log posterior.
@@ -44,10 +44,10 @@ pub struct TaskOutput {
 }
 
 /// What a task found, or why it failed.
-pub type Outcome = Result<TaskOutput, String>;
+pub(crate) type Outcome = Result<TaskOutput, String>;
 
 /// Runs tasks whose results go to one folder.
-pub struct Batch<'a> {
+pub(crate) struct Batch<'a> {
     /// The folder.
     pub out: &'a Path,
     /// Finished work.
@@ -79,7 +79,7 @@ impl From<StageError> for Stop {
 
 impl Batch<'_> {
     /// Length of the progress bar for some tasks.
-    pub fn length(tasks: &[Task]) -> u64 {
+    pub(crate) fn length(tasks: &[Task]) -> u64 {
         tasks.iter().map(Task::length).sum()
     }
 
@@ -88,7 +88,7 @@ impl Batch<'_> {
     ///
     /// # Errors
     /// If a file cannot be written.
-    pub fn run_in_order(&self, tasks: &[Task]) -> Result<Vec<Outcome>, ExperimentError> {
+    pub(crate) fn run_in_order(&self, tasks: &[Task]) -> Result<Vec<Outcome>, ExperimentError> {
         let progress: Vec<_> = tasks.iter().map(|_| TaskProgress::new(self.bar)).collect();
         std::thread::scope(|scope| {
             let mut all = Vec::with_capacity(tasks.len());
@@ -128,7 +128,7 @@ impl Batch<'_> {
     ///
     /// # Errors
     /// If a file cannot be written, or `keep` fails.
-    pub fn run_groups(
+    pub(crate) fn run_groups(
         &self,
         groups: &[Vec<Task>],
         keep: &(dyn Fn(usize, Vec<Outcome>) -> Result<(), FileError> + Sync),

@@ -16,7 +16,7 @@ fn shortened(settings: &Settings) -> Settings {
 }
 
 /// The first states of a trajectory that has these settings. What it says of the resolution is that of the whole.
-pub fn beginning(whole: &Trajectory, settings: &Settings) -> Trajectory {
+pub(crate) fn beginning(whole: &Trajectory, settings: &Settings) -> Trajectory {
     let states = shortened(settings).physics.samples(settings.sense.interval) + 1;
     Trajectory {
         poses: whole.poses[..states * whole.parts].to_vec(),
@@ -29,7 +29,10 @@ pub fn beginning(whole: &Trajectory, settings: &Settings) -> Trajectory {
 ///
 /// # Errors
 /// If the simulation is unstable.
-pub fn simulate_beginning(settings: &Settings, simulation: usize) -> Result<Trajectory, ExperimentError> {
+pub(crate) fn simulate_beginning(
+    settings: &Settings,
+    simulation: usize,
+) -> Result<Trajectory, ExperimentError> {
     simulate_movement(&shortened(settings), simulation, &|| ())
         .map_err(|error| ExperimentError::Stage(error.to_string()))
 }

@@ -7,7 +7,7 @@ use crate::settings::Settings;
 use crate::stages::simulate::Trajectory;
 
 /// All that the result of each stage depends on.
-pub struct Keys {
+pub(crate) struct Keys {
     /// Of the movement.
     pub movement: String,
     /// Of the pressures.
@@ -20,7 +20,7 @@ pub struct Keys {
 
 impl Keys {
     /// Of one simulation, mapped in some numbers of dimensions.
-    pub fn of(settings: &Settings, simulation: usize, dims: &[usize]) -> Self {
+    pub(crate) fn of(settings: &Settings, simulation: usize, dims: &[usize]) -> Self {
         let Settings { agent, skin, motion, physics, sense, quantise, map, experiment, .. } = settings;
         let movement = text(&(agent, motion, physics, sense.interval, simulation, experiment.seed));
         let pressures = text(&(&movement, skin, sense));
@@ -57,7 +57,7 @@ impl<T> LastResult<T> {
 
 /// The last results of the stages, for the tasks that come next: half a gigabyte at full size.
 #[derive(Default)]
-pub struct StageCache {
+pub(crate) struct StageCache {
     movement: LastResult<Result<Trajectory, String>>,
     sensed: LastResult<Sensed>,
     metric: LastResult<Metric>,
@@ -69,7 +69,7 @@ impl StageCache {
     ///
     /// # Errors
     /// Why a stage failed.
-    pub fn map(
+    pub(crate) fn map(
         &mut self,
         settings: &Settings,
         simulation: usize,

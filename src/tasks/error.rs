@@ -5,7 +5,7 @@ use crate::settings::SettingsError;
 
 /// An experiment or a study that could not be finished.
 #[derive(Debug, thiserror::Error)]
-pub enum ExperimentError {
+pub(crate) enum ExperimentError {
     /// A design does not say what it must.
     #[error("{origin}: {message}")]
     Design {
@@ -27,7 +27,7 @@ pub enum ExperimentError {
 
 impl ExperimentError {
     /// A design from `origin` that does not say what it must.
-    pub fn design(origin: &str, message: impl ToString) -> Self {
+    pub(crate) fn design(origin: &str, message: impl ToString) -> Self {
         Self::Design { origin: origin.to_owned(), message: one_line(&message.to_string()) }
     }
 }

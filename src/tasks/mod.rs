@@ -1,11 +1,11 @@
 //! Run tasks: simulate each movement once, infer from it as often as asked, keep what is finished.
 
 mod artifacts;
-pub mod batch;
-pub mod beginning;
-pub mod cache;
-pub mod error;
+pub(crate) mod batch;
+pub(crate) mod beginning;
+pub(crate) mod cache;
+pub(crate) mod error;
 mod prefetch;
-pub mod progress;
-pub mod seeds;
-pub mod task;
+pub(crate) mod progress;
+pub(crate) mod seeds;
+pub(crate) mod task;

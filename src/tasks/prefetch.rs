@@ -11,7 +11,7 @@ const MOST_PREFETCHED: usize = 8;
 
 /// The movements of a list of tasks, of which the next ones, as many as there are threads, are simulated while the last is
 /// inferred from. A simulation has one thread, so that one at a time would leave the others idle.
-pub struct Prefetch<'scope, 'env> {
+pub(super) struct Prefetch<'scope, 'env> {
     scope: &'scope Scope<'scope, 'env>,
     tasks: &'env [Task],
     progress: &'env [TaskProgress<'env>],
@@ -21,7 +21,7 @@ pub struct Prefetch<'scope, 'env> {
 
 impl<'scope, 'env> Prefetch<'scope, 'env> {
     /// Of some tasks, those with the same movement side by side.
-    pub fn new(
+    pub(super) fn new(
         scope: &'scope Scope<'scope, 'env>,
         tasks: &'env [Task],
         progress: &'env [TaskProgress<'env>],
@@ -31,7 +31,7 @@ impl<'scope, 'env> Prefetch<'scope, 'env> {
 
     /// The movement of the task at this place of the list. Those that the tasks after it need are begun, in the hope that no
     /// checkpoint has what is to be inferred from them.
-    pub fn movement(&mut self, at: usize) -> Result<Trajectory, String> {
+    pub(super) fn movement(&mut self, at: usize) -> Result<Trajectory, String> {
         let (tasks, progress) = (self.tasks, self.progress);
         // Those that were begun for tasks that a checkpoint had.
         while self

@@ -5,7 +5,7 @@ use std::time::Duration;
 use indicatif::{ProgressBar, ProgressStyle};
 
 /// A bar over `length` pieces of work, named `what`.
-pub fn progress(length: u64, what: String) -> ProgressBar {
+pub(crate) fn progress(length: u64, what: String) -> ProgressBar {
     let style = ProgressStyle::with_template("{msg} {wide_bar} {percent} %, {eta} left")
         .expect("the template is valid");
     let bar = ProgressBar::new(length).with_style(style).with_message(what);

@@ -74,7 +74,7 @@ impl fmt::Display for Used {
 }
 
 /// For what master seeds were used before, in a sentence; `None` if none of them was.
-pub fn used_before(seeds: RangeInclusive<u64>) -> Option<String> {
+pub(crate) fn used_before(seeds: RangeInclusive<u64>) -> Option<String> {
     let (first, last) = (seeds.start(), seeds.end());
     let meet = |used: &Used| used.seeds().start() <= last && first <= used.seeds().end();
     let uses: Vec<String> = list().iter().filter(|used| meet(used)).map(Used::to_string).collect();

@@ -16,7 +16,7 @@ const MOVEMENT_STEPS: u64 = 100;
 
 /// What is inferred from one movement of one body.
 #[derive(Debug, Clone)]
-pub struct Task {
+pub(crate) struct Task {
     /// Its name among the checkpoints; tasks of one name are the same.
     pub name: String,
     /// All settings, with p of this movement.
@@ -33,7 +33,7 @@ pub struct Task {
 
 /// Which files of a body are results.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Keep {
+pub(crate) enum Keep {
     /// No file: only what is inferred counts.
     Nothing,
     /// The truth and the body maps.
@@ -44,7 +44,7 @@ pub enum Keep {
 
 impl Task {
     /// d of its body maps, rising.
-    pub fn dimensions(&self) -> Vec<usize> {
+    pub(crate) fn dimensions(&self) -> Vec<usize> {
         let inferred = self.conditions.iter().map(|condition| condition.dimension);
         let mut all: Vec<usize> = inferred.chain(self.clustered.iter().copied()).collect();
         all.sort_unstable();
@@ -53,18 +53,18 @@ impl Task {
     }
 
     /// Whether figures and the viewer show how its movement begins: that of the first simulation whose files are results.
-    pub fn is_shown(&self) -> bool {
+    pub(crate) fn is_shown(&self) -> bool {
         self.simulation == 1 && self.keep != Keep::Nothing
     }
 
     /// Whether another task needs the same movement.
-    pub fn shares_movement(&self, other: &Self) -> bool {
+    pub(crate) fn shares_movement(&self, other: &Self) -> bool {
         let key = |task: &Self| Keys::of(&task.settings, task.simulation, &[]).movement;
         key(self) == key(other)
     }
 
     /// Steps of the progress bar: one for each chain, and some for the movement.
-    pub fn length(&self) -> u64 {
+    pub(crate) fn length(&self) -> u64 {
         MOVEMENT_STEPS + (self.conditions.len() * self.settings.schema.chains) as u64
     }
 
@@ -72,7 +72,7 @@ impl Task {
     ///
     /// # Errors
     /// Why that failed.
-    pub fn simulate(&self, progress: &TaskProgress) -> Result<Trajectory, String> {
+    pub(crate) fn simulate(&self, progress: &TaskProgress) -> Result<Trajectory, String> {
         let samples = self.settings.physics.samples(self.settings.sense.interval) + 1;
         let seen = Cell::new(0);
         let tick = || {
@@ -86,29 +86,29 @@ impl Task {
 }
 
 /// Progress of one task, of which some may be done already, or never.
-pub struct TaskProgress<'a> {
+pub(crate) struct TaskProgress<'a> {
     bar: &'a ProgressBar,
     done: AtomicU64,
 }
 
 impl<'a> TaskProgress<'a> {
-    pub fn new(bar: &'a ProgressBar) -> Self {
+    pub(crate) fn new(bar: &'a ProgressBar) -> Self {
         Self { bar, done: AtomicU64::new(0) }
     }
 
-    pub fn add(&self, steps: u64) {
+    pub(crate) fn add(&self, steps: u64) {
         self.done.fetch_add(steps, Ordering::Relaxed);
         self.bar.inc(steps);
     }
 
-    pub fn complete(&self, task: &Task) {
+    pub(crate) fn complete(&self, task: &Task) {
         self.bar.inc(task.length().saturating_sub(self.done.load(Ordering::Relaxed)));
     }
 }
 
 /// Places of the tasks in their list, those together that need the same movement, and of these those after each other that
 /// need the same pressures, distances and maps.
-pub fn by_movement(tasks: &[Task]) -> Vec<Vec<usize>> {
+pub(crate) fn by_movement(tasks: &[Task]) -> Vec<Vec<usize>> {
     let mut movements: Vec<Vec<usize>> = Vec::new();
     let mut places: HashMap<String, usize> = HashMap::new();
     for (at, Task { settings, simulation, .. }) in tasks.iter().enumerate() {

@@ -1,4 +1,5 @@
 //! Run every stage on settings whose sizes are cut to what a test can afford.
+#![allow(unreachable_pub, reason = "a test and a fuzz target compile it for themselves")]
 
 use bodyschema::pipeline::{
     Condition, StageError, cluster_and_score, infer_and_score, map_sensed, simulate_and_sense,

@@ -1,4 +1,5 @@
 //! Body maps drawn from the generative model of the DPGMM-LJ itself, with a known tree.
+#![allow(unreachable_pub, reason = "tests, benchmarks and examples compile it for themselves")]
 
 use bodyschema::numerics::rng::Stream;
 use bodyschema::stages::body_map::BodyMap;

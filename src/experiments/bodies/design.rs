@@ -14,7 +14,7 @@ use crate::tasks::error::ExperimentError;
 /// What is simulated, and what is recorded of it.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Design {
+pub(crate) struct Design {
     /// Master seed.
     pub seed: u64,
     /// Movements of each body at each p.
@@ -39,7 +39,7 @@ pub struct Design {
 /// A kind of movement, such as a rhythmic one.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Kind {
+pub(crate) struct Kind {
     /// Its name in tables.
     pub name: String,
     /// What is not as in the settings of the design.
@@ -50,7 +50,7 @@ pub struct Kind {
 /// The beginning of a movement, as noisy sensors record it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Recording {
+pub(crate) struct Recording {
     /// T.
     pub samples: usize,
     /// Standard deviation of the noise that is added to each pressure, over the root mean square of its sensor.
@@ -59,7 +59,7 @@ pub struct Recording {
 
 /// How a body moves.
 #[derive(Debug, Clone, Copy)]
-pub struct Way<'a> {
+pub(crate) struct Way<'a> {
     /// The kind of movement; `None` if there is one.
     pub kind: Option<&'a Kind>,
     /// p.
@@ -68,19 +68,19 @@ pub struct Way<'a> {
 
 impl Way<'_> {
     /// The name of the kind.
-    pub fn name(&self) -> Option<&str> {
+    pub(crate) fn name(&self) -> Option<&str> {
         self.kind.map(|kind| kind.name.as_str())
     }
 
     /// In words, such as `p = 0.5` or `rhythmic, p = 0.5`.
-    pub fn words(&self) -> String {
+    pub(crate) fn words(&self) -> String {
         let kind = self.name().map_or(String::new(), |name| format!("{name}, "));
         format!("{kind}p = {}", self.coordination)
     }
 }
 
 /// A body of the study.
-pub struct StudyBody {
+pub(crate) struct StudyBody {
     /// The name of its file.
     pub name: String,
     /// The hash of this file.
@@ -94,7 +94,7 @@ impl Design {
     ///
     /// # Errors
     /// If it is no design.
-    pub fn parse(text: &str, path: &Path) -> Result<Self, ExperimentError> {
+    pub(crate) fn parse(text: &str, path: &Path) -> Result<Self, ExperimentError> {
         let wrong = |message: String| ExperimentError::design(&path.display().to_string(), message);
         let design: Self = toml::from_str(text).map_err(|error| wrong(error.to_string()))?;
         let Self { movements, coordinations, chains, bodies, recordings, .. } = &design;
@@ -128,7 +128,7 @@ impl Design {
     ///
     /// # Errors
     /// If one cannot be read.
-    pub fn read_bodies(&self, path: &Path) -> Result<Vec<StudyBody>, ExperimentError> {
+    pub(crate) fn read_bodies(&self, path: &Path) -> Result<Vec<StudyBody>, ExperimentError> {
         let folder = path.parent().unwrap_or(Path::new(""));
         let read = |file: &PathBuf| {
             let name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
@@ -139,7 +139,7 @@ impl Design {
     }
 
     /// How bodies move, one way after the other: each kind at each p.
-    pub fn ways(&self) -> Vec<Way<'_>> {
+    pub(crate) fn ways(&self) -> Vec<Way<'_>> {
         let kinds: Vec<Option<&Kind>> =
             if self.kinds.is_empty() { vec![None] } else { self.kinds.iter().map(Some).collect() };
         let at_each = |kind| self.coordinations.iter().map(move |&coordination| Way { kind, coordination });
@@ -150,7 +150,7 @@ impl Design {
     ///
     /// # Errors
     /// If they cannot be used.
-    pub fn settings_of(&self, Way { kind, coordination }: Way) -> Result<Settings, ExperimentError> {
+    pub(crate) fn settings_of(&self, Way { kind, coordination }: Way) -> Result<Settings, ExperimentError> {
         let own = kind.map(|kind| &kind.settings);
         let mut settings = Settings::overlaid([&self.settings].into_iter().chain(own), "the design")?;
         let samples = self.recordings.iter().map(|one| one.samples).max().unwrap_or(0);

@@ -6,5 +6,5 @@ mod page;
 mod peers;
 mod run;
 
-pub use self::design::Design;
-pub use self::run::{is_study, redraw, study};
+pub(crate) use self::design::Design;
+pub(crate) use self::run::{is_study, redraw, study};

@@ -18,7 +18,7 @@ use crate::stages::simulate::simulate;
 use crate::stages::tree::{Edge, Truth};
 
 /// A movement of the study.
-pub struct Movement<'a> {
+pub(super) struct Movement<'a> {
     /// What is studied.
     pub design: &'a Design,
     /// The body.
@@ -35,7 +35,7 @@ pub struct Movement<'a> {
 
 /// What was found in a recording: a row of recordings.csv.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub struct Row {
+pub(super) struct Row {
     /// The body.
     pub body: String,
     /// The kind of movement, if the study has kinds.
@@ -77,7 +77,7 @@ pub struct Row {
 
 /// An edge of an estimated tree: a row of edges.csv.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub struct EdgeRow {
+pub(super) struct EdgeRow {
     /// The body.
     pub body: String,
     /// The kind of movement, if the study has kinds.
@@ -99,7 +99,7 @@ pub struct EdgeRow {
 
 /// All that was found in the recordings of a movement.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub struct Found {
+pub(super) struct Found {
     /// A row for each recording.
     pub rows: Vec<Row>,
     /// A row for each edge of each recording.
@@ -108,7 +108,7 @@ pub struct Found {
 
 impl Movement<'_> {
     /// The name of its checkpoint.
-    pub fn name(&self) -> String {
+    pub(super) fn name(&self) -> String {
         let kind = self.way.name().map_or(String::new(), |kind| format!("-{kind}"));
         format!("{}{kind}-p{}-{}", self.body.name, self.way.coordination, self.number)
     }
@@ -122,7 +122,7 @@ impl Movement<'_> {
     ///
     /// # Errors
     /// If it is unstable; the message says at which body.
-    pub fn run(&self, tick: &dyn Fn()) -> Result<Found, String> {
+    pub(super) fn run(&self, tick: &dyn Fn()) -> Result<Found, String> {
         let Settings { motion, physics, sense: tactile, experiment, .. } = self.settings;
         let (agent, simulation) = (&self.body.body.agent, self.simulation());
         let mut rng = stream(experiment.seed, simulation, "motion", 0);

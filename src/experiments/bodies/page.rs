@@ -39,10 +39,10 @@ const TITLES: [&str; METHODS.len()] =
     ["parts", "tree", "true\nparts", "nearest", "Chow–\nLiu", "DPGMM\n-LJ", "\n+ Prim"];
 
 /// The picture, in the folder of the study.
-pub const PICTURE: &str = "figures/bodies.svg";
+pub(super) const PICTURE: &str = "figures/bodies.svg";
 
 /// What a page is made of.
-pub struct Page<'a> {
+pub(super) struct Page<'a> {
     /// What was studied.
     pub design: &'a Design,
     /// A row for each recording.
@@ -58,7 +58,7 @@ impl Page<'_> {
     }
 
     /// The picture: how often each method is right, of each recording at each p.
-    pub fn picture(&self) -> (Vec<Column>, Vec<Line>) {
+    pub(super) fn picture(&self) -> (Vec<Column>, Vec<Line>) {
         let column =
             |title: &str| Column { title: title.to_owned(), share: true, published: None, accepted: None };
         let cell = |rows: &[&Row], right: Right| -> Cell {
@@ -81,7 +81,7 @@ impl Page<'_> {
     }
 
     /// The page.
-    pub fn text(&self) -> String {
+    pub(super) fn text(&self) -> String {
         [self.methods(), self.by_body(), self.confidences()].concat().join("\n")
     }
 

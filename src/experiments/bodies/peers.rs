@@ -14,7 +14,7 @@ const DIMENSIONS: usize = 14;
 
 /// Two trees over given parts: of the nearest sensors, and of Chow and Liu (1968), the tree of most information between parts,
 /// which is the mean between their sensors.
-pub fn trees(labels: &[usize], distances: &Distances, symbols: &Symbols) -> [Vec<Edge>; 2] {
+pub(super) fn trees(labels: &[usize], distances: &Distances, symbols: &Symbols) -> [Vec<Edge>; 2] {
     let parts = labels.iter().max().map_or(0, |last| last + 1);
     let entropies: Vec<f64> = symbols.series().map(|series| entropy(series, symbols.levels)).collect();
     let mut nearest = DMatrix::from_element(parts, parts, f64::INFINITY);
@@ -45,7 +45,7 @@ fn entropy(series: &[u8], levels: usize) -> f64 {
 }
 
 /// The draw of highest log posterior of the DPGMM-LJ, and of the DPGMM with Prim's tree; `None` where there is no body map.
-pub fn mixtures(distances: &Distances, settings: &Settings, simulation: usize) -> Option<[Sample; 2]> {
+pub(super) fn mixtures(distances: &Distances, settings: &Settings, simulation: usize) -> Option<[Sample; 2]> {
     let scaling = ClassicalScaling::new(distances, DIMENSIONS).ok()?;
     let map = scaling.coordinates(scaling.positive().clamp(1, DIMENSIONS)).ok()?;
     let draw = |model| {

@@ -30,7 +30,7 @@ const PAGE: &str = "bodies.md";
 ///
 /// # Errors
 /// If a body or the settings cannot be used, a movement is unstable, or a file cannot be written.
-pub fn study(design: &Design, text: &str, path: &Path, out: &Path) -> Result<(), ExperimentError> {
+pub(crate) fn study(design: &Design, text: &str, path: &Path, out: &Path) -> Result<(), ExperimentError> {
     let mut folder = ResultFolder::new(out);
     let bodies = design.read_bodies(path)?;
     let settings = design
@@ -92,7 +92,7 @@ pub fn study(design: &Design, text: &str, path: &Path, out: &Path) -> Result<(),
 }
 
 /// Whether a folder holds a finished study of bodies.
-pub fn is_study(folder: &Path) -> bool {
+pub(crate) fn is_study(folder: &Path) -> bool {
     [ROWS, EDGES, COPY].iter().all(|name| folder.join(name).is_file())
 }
 
@@ -100,7 +100,7 @@ pub fn is_study(folder: &Path) -> bool {
 ///
 /// # Errors
 /// If they are not what a study wrote, or a file cannot be written.
-pub fn redraw(folder: &Path) -> Result<(), ExperimentError> {
+pub(crate) fn redraw(folder: &Path) -> Result<(), ExperimentError> {
     let path = folder.join(COPY);
     let design = Design::parse(&read_text(&path)?, &path)?;
     let rows: Vec<Row> = read_rows(&folder.join(ROWS))?;

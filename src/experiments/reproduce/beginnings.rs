@@ -10,7 +10,7 @@ use crate::tasks::task::Task;
 
 /// The first seconds of the first simulation, at one p after the other.
 #[derive(Debug, Default)]
-pub struct Beginnings(Vec<(f64, Trajectory)>);
+pub(super) struct Beginnings(Vec<(f64, Trajectory)>);
 
 impl Beginnings {
     /// Those that no task of the run simulates: figure 5 is of experiment 1, which has one p, and shows those of
@@ -18,7 +18,7 @@ impl Beginnings {
     ///
     /// # Errors
     /// If a simulation is unstable.
-    pub fn of_other_coordinations(run: &Run) -> Result<Self, ExperimentError> {
+    pub(super) fn of_other_coordinations(run: &Run) -> Result<Self, ExperimentError> {
         if run.experiment == Experiment::Exp2 {
             return Ok(Self::default());
         }
@@ -36,7 +36,7 @@ impl Beginnings {
     ///
     /// # Errors
     /// If a simulation is unstable.
-    pub fn add(&mut self, tasks: &[Task], found: &mut [TaskOutput]) -> Result<(), ExperimentError> {
+    pub(super) fn add(&mut self, tasks: &[Task], found: &mut [TaskOutput]) -> Result<(), ExperimentError> {
         for (task, found) in tasks.iter().zip(found).filter(|(task, _)| task.is_shown()) {
             let trajectory = match found.beginning.take() {
                 Some(kept) => kept,
@@ -51,7 +51,7 @@ impl Beginnings {
     ///
     /// # Panics
     /// If there is none.
-    pub fn at(&self, coordination: f64) -> &Trajectory {
+    pub(super) fn at(&self, coordination: f64) -> &Trajectory {
         let found = self.0.iter().find(|(p, _)| *p == coordination);
         &found.expect("every p that is shown was simulated").1
     }

@@ -37,7 +37,7 @@ use crate::tasks::task::{Keep, Task};
 
 /// A finished experiment.
 #[derive(Debug)]
-pub struct Finished {
+pub(crate) struct Finished {
     /// What was run, in words.
     pub preamble: String,
     /// All claims, with the headline by the other interpretation after that of the run.
@@ -52,7 +52,7 @@ pub struct Finished {
 ///
 /// # Errors
 /// If a stage fails or a file cannot be written.
-pub fn reproduce(run: &Run) -> Result<Finished, ExperimentError> {
+pub(crate) fn reproduce(run: &Run) -> Result<Finished, ExperimentError> {
     let begun = (SystemTime::now(), Instant::now());
     let mut folder = ResultFolder::new(run.out);
     folder.remove(made_anew().chain(scenes::made_anew(run.out)))?;
@@ -175,7 +175,7 @@ fn write_samples(
 
 /// Judges all claims of an experiment by its samples and clusterings, with how many single simulations show each; and what they are
 /// judged by.
-pub fn judge_all(
+pub(super) fn judge_all(
     experiment: Experiment,
     settings: &Settings,
     records: Vec<Record>,
@@ -230,7 +230,7 @@ fn write_figures(
 }
 
 /// Writes the tables of the figures that samples and clusterings give, and the picture of every table in the folder.
-pub fn write_curves(
+pub(super) fn write_curves(
     experiment: Experiment,
     evidence: &Evidence,
     mut figures: Figures,

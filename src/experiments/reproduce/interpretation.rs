@@ -19,7 +19,7 @@ const EQUATIONS: &str = include_str!("../../../reproduce/equations.toml");
 
 /// The headline by the other interpretation of the paper. It does not count: where it fails, its claim says why, and the run goes
 /// on.
-pub struct OtherInterpretation {
+pub(super) struct OtherInterpretation {
     /// The interpretation.
     sampler: Sampler,
     /// One task for each simulation.
@@ -30,7 +30,7 @@ pub struct OtherInterpretation {
 
 impl OtherInterpretation {
     /// The headline's condition by the interpretation that the run does not follow; `None` if the run has not this condition.
-    pub fn of(run: &Run, tasks: &[Task]) -> Option<Self> {
+    pub(super) fn of(run: &Run, tasks: &[Task]) -> Option<Self> {
         let condition = condition();
         let same: Vec<&Task> = tasks.iter().filter(|task| task.conditions.contains(&condition)).collect();
         let sampler = other_than(run.settings.schema.sampler);
@@ -52,7 +52,7 @@ impl OtherInterpretation {
     }
 
     /// The tasks of the run, each followed by that of this interpretation which shares its movement.
-    pub fn behind(&self, tasks: &[Task]) -> Vec<Task> {
+    pub(super) fn behind(&self, tasks: &[Task]) -> Vec<Task> {
         let shares = |task: &Task, other: &Task| {
             let p = |task: &Task| task.settings.motion.coordination;
             other.simulation == task.simulation && p(other) == p(task)
@@ -62,14 +62,14 @@ impl OtherInterpretation {
     }
 
     /// By how many chains the headline is inferred, in words.
-    pub fn in_words(&self) -> String {
+    pub(super) fn in_words(&self) -> String {
         let Some(Task { settings, .. }) = self.tasks.first() else { return String::new() };
         let (chains, sweeps) = (settings.schema.chains, settings.schema.sweeps);
         format!(" For the headline, the {} uses {chains} chains of {sweeps} sweeps.", self.sampler.in_words())
     }
 
     /// All its posterior samples, and the headline by them.
-    pub fn judge(&self, run: &Run, outcomes: Vec<Outcome>) -> (Vec<Record>, Judged) {
+    pub(super) fn judge(&self, run: &Run, outcomes: Vec<Outcome>) -> (Vec<Record>, Judged) {
         let mut problem = self.problem.clone();
         let mut records = Vec::new();
         for outcome in outcomes {
@@ -93,7 +93,7 @@ impl OtherInterpretation {
 }
 
 /// The interpretation that stands beside that of a run.
-pub fn other_than(sampler: Sampler) -> Sampler {
+pub(super) fn other_than(sampler: Sampler) -> Sampler {
     match sampler {
         Sampler::Equations | Sampler::SplitMerge => Sampler::AuthorsCode,
         Sampler::AuthorsCode => Sampler::Equations,

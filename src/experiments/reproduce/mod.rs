@@ -7,6 +7,6 @@ mod rejudge;
 mod run;
 mod scenes;
 
-pub use self::experiment::reproduce;
-pub use self::rejudge::rejudge;
-pub use self::run::Run;
+pub(crate) use self::experiment::reproduce;
+pub(crate) use self::rejudge::rejudge;
+pub(crate) use self::run::Run;

@@ -24,7 +24,7 @@ use crate::tasks::error::ExperimentError;
 ///
 /// # Errors
 /// If a file of the experiment is missing or malformed, or one cannot be written.
-pub fn rejudge(path: &Path) -> Result<Option<Vec<Picture>>, ExperimentError> {
+pub(crate) fn rejudge(path: &Path) -> Result<Option<Vec<Picture>>, ExperimentError> {
     let samples = path.join("samples.csv");
     if !samples.is_file() {
         return Ok(None);

@@ -9,7 +9,7 @@ use crate::tasks::seeds::used_before;
 
 /// How an experiment is run.
 #[derive(Debug)]
-pub struct Run<'a> {
+pub(crate) struct Run<'a> {
     /// The experiment.
     pub experiment: Experiment,
     /// Its settings.
@@ -24,7 +24,7 @@ pub struct Run<'a> {
 
 impl Run<'_> {
     /// The largest d of its body maps.
-    pub fn largest_dimension(&self) -> usize {
+    pub(crate) fn largest_dimension(&self) -> usize {
         let settings = &self.settings.experiment;
         match self.experiment {
             Experiment::Exp1 => *settings.dimensions.last().expect("validated as not empty"),
@@ -35,7 +35,7 @@ impl Run<'_> {
 
 /// Conditions, amounts, seed and revision of a run, and how well its movements were resolved, in words: what stands above
 /// the table of claims.
-pub fn preamble(run: &Run, resolution: Resolution) -> String {
+pub(super) fn preamble(run: &Run, resolution: Resolution) -> String {
     let Settings { motion, schema, experiment, .. } = run.settings;
     let what = match run.experiment {
         Experiment::Exp1 => {

@@ -25,7 +25,7 @@ use crate::tasks::task::Task;
 ///
 /// # Errors
 /// If a file cannot be written.
-pub fn write(
+pub(super) fn write(
     run: &Run,
     tasks: &[Task],
     found: &[TaskOutput],
@@ -49,7 +49,7 @@ pub fn write(
 }
 
 /// Files of an earlier run.
-pub fn made_anew(folder: &Path) -> Vec<String> {
+pub(super) fn made_anew(folder: &Path) -> Vec<String> {
     stored::names(folder)
 }
 

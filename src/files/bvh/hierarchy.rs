@@ -43,7 +43,7 @@ struct Hierarchy<'a> {
 }
 
 /// The joints that lines describe, each after the one that carries it.
-pub fn joints(lines: &[(usize, &str)]) -> Result<Vec<RecordedJoint>, Wrong> {
+pub(super) fn joints(lines: &[(usize, &str)]) -> Result<Vec<RecordedJoint>, Wrong> {
     let words: Vec<Word> = lines.iter().flat_map(|&(line, text)| words(line, text)).collect();
     let mut hierarchy = Hierarchy {
         words: words.into_iter().peekable(),

@@ -7,7 +7,7 @@ const LONGEST: f64 = 1e3;
 
 /// The frame time, s, and the numbers of all frames, which have `width` numbers each. `lines` follow the line MOTION, of which
 /// `line` is the number.
-pub fn frames<'a>(
+pub(super) fn frames<'a>(
     line: usize,
     mut lines: impl Iterator<Item = (usize, &'a str)>,
     width: usize,

@@ -31,7 +31,7 @@ struct Tree<'a> {
 }
 
 /// The parts of links, each after its parent, and notes on what was changed. Messages call a link `word`.
-pub fn joined(word: &str, links: &[Link]) -> Result<(Vec<PartEntry>, Vec<String>), Wrong> {
+pub(super) fn joined(word: &str, links: &[Link]) -> Result<(Vec<PartEntry>, Vec<String>), Wrong> {
     let tree = Tree::new(word, links)?;
     let (mut parts, mut notes) = (Vec::new(), Vec::new());
     // The first link that has a shape, of a link and those it is fixed on, up to its rigid body's first.

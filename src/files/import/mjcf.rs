@@ -43,7 +43,7 @@ struct Bodies<'a> {
 }
 
 /// The bodies of the element `mujoco`, each after the one that carries it.
-pub fn links<'a>(root: Node<'a, 'a>) -> Result<Vec<Link>, Wrong> {
+pub(super) fn links<'a>(root: Node<'a, 'a>) -> Result<Vec<Link>, Wrong> {
     if let Some(node) = root.descendants().find(|node| node.has_tag_name("include")) {
         return Err(Element::new("include", node)
             .wrong("is not supported; insert the content of that file in its place"));

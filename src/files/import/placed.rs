@@ -9,7 +9,7 @@ use crate::stages::agent::{Shape, Vector3};
 
 /// A solid where it is in the rest pose.
 #[derive(Debug, Clone)]
-pub struct Solid {
+pub(super) struct Solid {
     /// Its shape.
     pub shape: Shape,
     /// From the shape's frame to the common one.
@@ -20,7 +20,7 @@ pub struct Solid {
 
 /// One way in which a link moves on its parent.
 #[derive(Debug, Clone)]
-pub enum Turn {
+pub(super) enum Turn {
     /// About one axis.
     Hinge {
         /// A place on the axis.
@@ -39,7 +39,7 @@ pub enum Turn {
 
 /// A body of MJCF or a link of URDF.
 #[derive(Debug, Clone)]
-pub struct Link {
+pub(super) struct Link {
     /// Its name.
     pub name: String,
     /// The earlier link that carries it.
@@ -64,21 +64,21 @@ fn volume(shape: &Shape) -> f64 {
 
 /// Gives solids the density at which they have this mass, kg, together. A mass of 0 says nothing of them; neither does
 /// any mass of what has no volume, which is refused as a part.
-pub fn weigh(solids: &mut [Solid], mass: f64) {
+pub(super) fn weigh(solids: &mut [Solid], mass: f64) {
     let volume: f64 = solids.iter().map(|solid| volume(&solid.shape)).sum();
     let density = (mass != 0.0 && volume > 0.0).then(|| mass / volume);
     solids.iter_mut().for_each(|solid| solid.density = density);
 }
 
 /// The least rotation that takes z to a direction; about x if it is the opposite one.
-pub fn z_to(direction: &UnitVector3<f64>) -> UnitQuaternion<f64> {
+pub(super) fn z_to(direction: &UnitVector3<f64>) -> UnitQuaternion<f64> {
     let axis = Column::z().cross(direction);
     let axis = UnitVector3::try_new(axis, 1e-10).unwrap_or(Column::x_axis());
     UnitQuaternion::from_axis_angle(&axis, direction.xy().norm().atan2(direction.z))
 }
 
 /// Without what rounding added on the way: 0.3 for 0.30000000000000004.
-pub fn rounded(numbers: impl Into<Vector3>) -> Vector3 {
+pub(super) fn rounded(numbers: impl Into<Vector3>) -> Vector3 {
     numbers.into().map(round)
 }
 
@@ -89,7 +89,7 @@ fn round(number: f64) -> f64 {
 
 impl Solid {
     /// The solid as a part that is not joined yet.
-    pub fn part(&self, name: String) -> PartEntry {
+    pub(super) fn part(&self, name: String) -> PartEntry {
         let at = |height: f64| Some(rounded((self.pose * nalgebra::Point3::new(0.0, 0.0, height)).coords));
         let mut part = PartEntry {
             name,

@@ -325,7 +325,7 @@ fn move_link(link: &mut Link, way: Column<f64>) {
 }
 
 /// How many names there are, and the first of them; `None` if there is none.
-pub fn names<'a>(names: impl Iterator<Item = &'a str>) -> Option<String> {
+pub(crate) fn names<'a>(names: impl Iterator<Item = &'a str>) -> Option<String> {
     const MOST: usize = 6;
     let names: Vec<&str> = names.collect();
     let more = if names.len() > MOST { ", …" } else { "" };

@@ -18,7 +18,7 @@ const UNITS: [(f64, &str); 5] = [
 ];
 
 /// The unit in which a longest way is nearest to that of a person, by ratio.
-pub fn unit(way: f64) -> (f64, &'static str) {
+pub(super) fn unit(way: f64) -> (f64, &'static str) {
     let off = |scale: f64| (way * scale / PERSON).ln().abs();
     UNITS
         .into_iter()
@@ -27,7 +27,7 @@ pub fn unit(way: f64) -> (f64, &'static str) {
 }
 
 /// The longest way along the bones of a skeleton, in its unit.
-pub fn longest_way(movement: &RecordedMovement) -> f64 {
+pub(super) fn longest_way(movement: &RecordedMovement) -> f64 {
     let joints = movement.joints();
     // From each joint, the longest way up.
     let mut up = vec![0.0_f64; joints.len()];

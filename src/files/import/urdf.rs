@@ -18,7 +18,7 @@ struct Joint<'a> {
 }
 
 /// The links of the element `robot`, each after the one that carries it.
-pub fn links<'a>(root: Node<'a, 'a>) -> Result<Vec<Link>, Wrong> {
+pub(super) fn links<'a>(root: Node<'a, 'a>) -> Result<Vec<Link>, Wrong> {
     let is_macro = |node: &Node| node.tag_name().namespace().is_some_and(|space| space.contains("xacro"));
     if let Some(node) = root.descendants().find(is_macro) {
         let wrong = Element::new(node.tag_name().name(), node);

@@ -4,13 +4,13 @@ use nalgebra::{UnitVector3, Vector3};
 use roxmltree::Node;
 
 /// What is wrong with a description.
-pub type Wrong = String;
+pub(super) type Wrong = String;
 
 /// Largest number that is read: sums and products of such numbers are numbers still.
 const LARGEST: f64 = 1e9;
 
 /// An element with the elements that give attributes it lacks, nearest first.
-pub struct Element<'a> {
+pub(super) struct Element<'a> {
     /// What messages call it.
     label: String,
     levels: Vec<Node<'a, 'a>>,
@@ -18,49 +18,49 @@ pub struct Element<'a> {
 
 impl<'a> Element<'a> {
     /// An element by itself.
-    pub fn new(label: impl Into<String>, node: Node<'a, 'a>) -> Self {
+    pub(super) fn new(label: impl Into<String>, node: Node<'a, 'a>) -> Self {
         Self { label: label.into(), levels: vec![node] }
     }
 
     /// An element over its defaults, nearest first.
-    pub fn over(mut self, defaults: impl IntoIterator<Item = Node<'a, 'a>>) -> Self {
+    pub(super) fn over(mut self, defaults: impl IntoIterator<Item = Node<'a, 'a>>) -> Self {
         self.levels.extend(defaults);
         self
     }
 
     /// An element within this one, by itself.
-    pub fn part(&self, node: Node<'a, 'a>) -> Self {
+    pub(super) fn part(&self, node: Node<'a, 'a>) -> Self {
         Self::new(format!("{} of {}", node.tag_name().name(), self.label), node)
     }
 
     /// What kind of element it is.
-    pub fn tag(&self) -> &'a str {
+    pub(super) fn tag(&self) -> &'a str {
         self.levels[0].tag_name().name()
     }
 
     /// A message that says where the element is.
-    pub fn wrong(&self, message: impl std::fmt::Display) -> Wrong {
+    pub(super) fn wrong(&self, message: impl std::fmt::Display) -> Wrong {
         format!("line {}: {} {message}", line(self.levels[0]), self.label)
     }
 
     /// An attribute, as it is written.
-    pub fn text(&self, key: &str) -> Option<&'a str> {
+    pub(super) fn text(&self, key: &str) -> Option<&'a str> {
         self.levels.iter().find_map(|node| node.attribute(key))
     }
 
     /// An attribute that must be there.
-    pub fn needed(&self, key: &str) -> Result<&'a str, Wrong> {
+    pub(super) fn needed(&self, key: &str) -> Result<&'a str, Wrong> {
         self.text(key).ok_or_else(|| self.wrong(format!("lacks {key}; add it")))
     }
 
     /// Which of several attributes that exclude each other is given nearest.
-    pub fn one_of(&self, keys: &[&'static str]) -> Option<&'static str> {
+    pub(super) fn one_of(&self, keys: &[&'static str]) -> Option<&'static str> {
         let given = |node: &Node| keys.iter().copied().find(|key| node.has_attribute(*key));
         self.levels.iter().find_map(given)
     }
 
     /// An attribute that is so many numbers.
-    pub fn numbers<const N: usize>(&self, key: &str) -> Result<Option<[f64; N]>, Wrong> {
+    pub(super) fn numbers<const N: usize>(&self, key: &str) -> Result<Option<[f64; N]>, Wrong> {
         let Some(text) = self.text(key) else { return Ok(None) };
         let found = parsed(text).and_then(|numbers| numbers.try_into().ok());
         let kind = if N == 1 { "a number".to_owned() } else { format!("{N} numbers") };
@@ -70,23 +70,23 @@ impl<'a> Element<'a> {
     }
 
     /// An attribute that is a number.
-    pub fn number(&self, key: &str) -> Result<Option<f64>, Wrong> {
+    pub(super) fn number(&self, key: &str) -> Result<Option<f64>, Wrong> {
         Ok(self.numbers::<1>(key)?.map(|[number]| number))
     }
 
     /// Numbers that must be there.
-    pub fn needed_numbers<const N: usize>(&self, key: &str) -> Result<[f64; N], Wrong> {
+    pub(super) fn needed_numbers<const N: usize>(&self, key: &str) -> Result<[f64; N], Wrong> {
         self.needed(key)?;
         Ok(self.numbers(key)?.unwrap_or([0.0; N]))
     }
 
     /// A number that must be there.
-    pub fn needed_number(&self, key: &str) -> Result<f64, Wrong> {
+    pub(super) fn needed_number(&self, key: &str) -> Result<f64, Wrong> {
         Ok(self.needed_numbers::<1>(key)?[0])
     }
 
     /// An attribute that is a list of numbers, of which a nearer element may give the first ones only.
-    pub fn overlaid(&self, key: &str) -> Result<Vec<f64>, Wrong> {
+    pub(super) fn overlaid(&self, key: &str) -> Result<Vec<f64>, Wrong> {
         let mut all: Vec<f64> = Vec::new();
         for text in self.levels.iter().rev().filter_map(|node| node.attribute(key)) {
             let near = parsed(text)
@@ -98,7 +98,7 @@ impl<'a> Element<'a> {
     }
 
     /// The direction of three numbers of an attribute.
-    pub fn direction(&self, key: &str, numbers: &[f64]) -> Result<UnitVector3<f64>, Wrong> {
+    pub(super) fn direction(&self, key: &str, numbers: &[f64]) -> Result<UnitVector3<f64>, Wrong> {
         UnitVector3::try_new(Vector3::from_iterator(numbers.iter().copied()), 1e-9)
             .ok_or_else(|| self.wrong(format!("has {key} of length 0; give it a direction")))
     }
@@ -111,6 +111,6 @@ fn parsed(text: &str) -> Option<Vec<f64>> {
 }
 
 /// The line on which an element begins.
-pub fn line(node: Node) -> u32 {
+pub(super) fn line(node: Node) -> u32 {
     node.document().text_pos_at(node.range().start).row
 }

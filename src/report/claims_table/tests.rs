@@ -34,12 +34,12 @@ fn judged(records: Vec<Record>) -> Vec<Judged> {
 }
 
 /// 20 eligible draws of one simulation, of which the last is wrong.
-pub fn nineteen_of_twenty() -> Vec<Judged> {
+pub(crate) fn nineteen_of_twenty() -> Vec<Judged> {
     judged((0..20).map(|chain| draw(1, chain, Some(chain < 19))).collect())
 }
 
 /// Without a draw that is eligible.
-pub fn no_eligible_sample() -> Vec<Judged> {
+pub(crate) fn no_eligible_sample() -> Vec<Judged> {
     judged(vec![draw(1, 0, None)])
 }
 

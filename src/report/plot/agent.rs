@@ -89,7 +89,7 @@ fn far_sensor(part: usize) -> MarkerStyle {
 }
 
 /// Figure 4.
-pub fn render(rows: &[AgentRow]) -> Result<String, PlotError> {
+pub(super) fn render(rows: &[AgentRow]) -> Result<String, PlotError> {
     check("position", rows.iter().flat_map(|row| [row.x_m, row.y_m, row.z_m]), -1e6, 1e6)?;
     let numbers = few("part", rows.iter().map(|row| row.part))?;
     let parts = numbers.iter().map(|&number| Cylinder::of(rows, number)).collect::<Result<Vec<_>, _>>()?;

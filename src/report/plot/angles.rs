@@ -14,7 +14,7 @@ use super::values::{check, few};
 const MARKERS: f64 = 7.0;
 
 /// Figure 5.
-pub fn render(rows: &[AngleRow]) -> Result<String, PlotError> {
+pub(super) fn render(rows: &[AngleRow]) -> Result<String, PlotError> {
     check("p", rows.iter().map(|row| row.coordination), 0.0, 1.0)?;
     check("time", rows.iter().map(|row| row.time_s), 0.0, 1e9)?;
     // A little room: the table is rounded.

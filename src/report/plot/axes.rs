@@ -10,13 +10,13 @@ use super::canvas::{
 };
 
 /// Height that the labels and the name of a horizontal axis take.
-pub const X_LABELS: f64 = 38.0;
+pub(super) const X_LABELS: f64 = 38.0;
 /// The same of an axis without a name.
-pub const X_BARE: f64 = 21.0;
+pub(super) const X_BARE: f64 = 21.0;
 
 /// One axis.
 #[derive(Clone)]
-pub struct Axis<'a> {
+pub(super) struct Axis<'a> {
     /// Data from one end to the other.
     pub range: Range<f64>,
     /// Where lines and labels are.
@@ -29,7 +29,7 @@ pub struct Axis<'a> {
 
 impl<'a> Axis<'a> {
     /// An axis over `range` with about `count` ticks at round values.
-    pub fn new(name: &'a str, range: Range<f64>, count: usize) -> Self {
+    pub(super) fn new(name: &'a str, range: Range<f64>, count: usize) -> Self {
         Self { ticks: ticks(&range, count), range, name, label: plain }
     }
 }
@@ -45,19 +45,19 @@ fn ticks(range: &Range<f64>, count: usize) -> Vec<f64> {
 }
 
 /// A number with no more digits than it needs, and a true minus sign.
-pub fn plain(value: f64) -> String {
+pub(super) fn plain(value: f64) -> String {
     let rounded = (value * 1e6).round() / 1e6 + 0.0;
     rounded.to_string().replace('-', "\u{2212}")
 }
 
 /// A share as a percentage.
-pub fn percent(value: f64) -> String {
+pub(super) fn percent(value: f64) -> String {
     format!("{} %", plain((value * 100.0).round()))
 }
 
 /// Ticks at the given values, leaving out those whose labels would collide: `room` is how far apart labels
 /// must be.
-pub fn sparse(values: &[f64], room: f64) -> Vec<f64> {
+pub(super) fn sparse(values: &[f64], room: f64) -> Vec<f64> {
     let mut kept: Vec<f64> = Vec::new();
     for &value in values {
         if kept.last().is_none_or(|last| value - last >= room * (1.0 - 1e-9)) {
@@ -68,7 +68,7 @@ pub fn sparse(values: &[f64], room: f64) -> Vec<f64> {
 }
 
 /// Range of values, widened on both sides by a share of itself; never empty.
-pub fn around(values: impl IntoIterator<Item = f64>, margin: f64) -> Range<f64> {
+pub(super) fn around(values: impl IntoIterator<Item = f64>, margin: f64) -> Range<f64> {
     let (low, high) = values
         .into_iter()
         .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)));
@@ -78,7 +78,7 @@ pub fn around(values: impl IntoIterator<Item = f64>, margin: f64) -> Range<f64> 
 
 /// A rectangle of a picture, in points.
 #[derive(Debug, Clone, Copy)]
-pub struct Rect {
+pub(super) struct Rect {
     /// Left edge.
     pub left: f64,
     /// Upper edge.
@@ -90,7 +90,7 @@ pub struct Rect {
 }
 
 /// Panels under each other, each with room for a title above it; only the last one has a name on its horizontal axis.
-pub struct Stack {
+pub(super) struct Stack {
     /// Upper edge of the first panel's title.
     pub top: f64,
     /// Height of a title.
@@ -105,17 +105,17 @@ pub struct Stack {
 
 impl Stack {
     /// Height of the picture that ends below the last panel.
-    pub fn height(&self) -> f64 {
+    pub(super) fn height(&self) -> f64 {
         self.top + self.count as f64 * (self.title + self.each) + X_LABELS - X_BARE + 4.0
     }
 
     /// Whether a panel is the last one.
-    pub fn is_last(&self, at: usize) -> bool {
+    pub(super) fn is_last(&self, at: usize) -> bool {
         at + 1 == self.count
     }
 
     /// The rectangle of a panel and its axes.
-    pub fn panel(&self, at: usize) -> Rect {
+    pub(super) fn panel(&self, at: usize) -> Rect {
         Rect {
             left: 4.0,
             top: self.top + at as f64 * (self.title + self.each) + self.title,
@@ -148,7 +148,7 @@ impl Ranged for Ticked {
 }
 
 /// Axes on a picture.
-pub struct Panel {
+pub(super) struct Panel {
     /// The area between the axes.
     pub inner: Rect,
     x: Range<f64>,
@@ -157,7 +157,7 @@ pub struct Panel {
 
 impl Panel {
     /// Draws axes into `outer`: the vertical one's labels take `y_labels` points on the left.
-    pub fn render(
+    pub(super) fn render(
         canvas: &Canvas,
         outer: Rect,
         y_labels: f64,
@@ -198,7 +198,7 @@ impl Panel {
     }
 
     /// Where a point of the data is; at the edge if it lies beyond.
-    pub fn at(&self, x: f64, y: f64) -> Place {
+    pub(super) fn at(&self, x: f64, y: f64) -> Place {
         let share = |value: f64, range: &Range<f64>| {
             ((value - range.start) / (range.end - range.start)).clamp(0.0, 1.0)
         };
@@ -209,12 +209,12 @@ impl Panel {
     }
 
     /// A horizontal line of reference.
-    pub fn reference(&self, canvas: &Canvas, y: f64) -> Rendered {
+    pub(super) fn reference(&self, canvas: &Canvas, y: f64) -> Rendered {
         canvas.dashes(self.at(self.x.start, y), self.at(self.x.end, y), stroke(GREY, 1.2))
     }
 
     /// A title above the axes.
-    pub fn title(&self, canvas: &Canvas, text: &str) -> Rendered {
+    pub(super) fn title(&self, canvas: &Canvas, text: &str) -> Rendered {
         let at = (self.inner.left + self.inner.width / 2.0, self.inner.top - 9.0);
         canvas.text(text, at, Anchor::Middle, FONT, INK)
     }

@@ -22,7 +22,7 @@ fn best() -> MarkerStyle {
 }
 
 /// Figure 7: a histogram of the number of parts for each d.
-pub fn parts(rows: &[PartsRow], mark: Option<&Mark>) -> Result<String, PlotError> {
+pub(super) fn parts(rows: &[PartsRow], mark: Option<&Mark>) -> Result<String, PlotError> {
     check("number of parts", rows.iter().map(|row| row.parts as f64), 0.0, 1000.0)?;
     check("mean", rows.iter().map(|row| row.mean), 0.0, 1000.0)?;
     check("interval end", rows.iter().flat_map(|row| [row.low, row.high]).flatten(), -1e9, 1e9)?;
@@ -162,7 +162,7 @@ fn check_boxes(rows: &[BoxRow]) -> Rendered {
 }
 
 /// Figure 9: a box of ARIs for each d.
-pub fn boxes(rows: &[BoxRow]) -> Result<String, PlotError> {
+pub(super) fn boxes(rows: &[BoxRow]) -> Result<String, PlotError> {
     check_boxes(rows)?;
     let mut legend = Legend::default();
     legend.add(Key::Line(VERMILLION, 2.6), "median");

@@ -10,25 +10,25 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 /// Width of every picture.
-pub const WIDTH: f64 = 520.0;
+pub(super) const WIDTH: f64 = 520.0;
 /// Size of labels: legible where the picture is shrunk to the width of a phone.
-pub const FONT: f64 = 13.0;
+pub(super) const FONT: f64 = 13.0;
 /// Size of small print.
-pub const SMALL: f64 = 12.0;
+pub(super) const SMALL: f64 = 12.0;
 /// The backend draws on whole units, so there are several to a point.
 const FINE: f64 = 4.0;
 
 /// What is drawn.
-pub const INK: RGBColor = RGBColor(0, 0, 0);
+pub(super) const INK: RGBColor = RGBColor(0, 0, 0);
 /// Axes, lines of reference and what is far away.
-pub const GREY: RGBColor = RGBColor(110, 110, 110);
+pub(super) const GREY: RGBColor = RGBColor(110, 110, 110);
 /// An accepted range: pale green, so that lines and markers stand out.
-pub const BAND: RGBColor = RGBColor(217, 240, 226);
+pub(super) const BAND: RGBColor = RGBColor(217, 240, 226);
 /// Lines that only guide the eye.
-pub const PALE: RGBColor = RGBColor(222, 222, 222);
+pub(super) const PALE: RGBColor = RGBColor(222, 222, 222);
 
 /// Okabe and Ito's colours, which the colour-blind tell apart; none too pale for a line.
-pub const PALETTE: [RGBColor; 7] = [
+pub(super) const PALETTE: [RGBColor; 7] = [
     BLUE,
     RGBColor(230, 159, 0),
     RGBColor(0, 158, 115),
@@ -38,13 +38,13 @@ pub const PALETTE: [RGBColor; 7] = [
     INK,
 ];
 /// The first of [`PALETTE`].
-pub const BLUE: RGBColor = RGBColor(0, 114, 178);
+pub(super) const BLUE: RGBColor = RGBColor(0, 114, 178);
 /// What stands out most from it.
-pub const VERMILLION: RGBColor = RGBColor(213, 94, 0);
+pub(super) const VERMILLION: RGBColor = RGBColor(213, 94, 0);
 
 /// Shapes of markers, so that colour is never alone. Their number has no factor in common with that of the
 /// colours: the pairs repeat late.
-pub const SHAPES: [Shape; 6] =
+pub(super) const SHAPES: [Shape; 6] =
     [Shape::Circle, Shape::Square, Shape::Triangle, Shape::Diamond, Shape::Plus, Shape::Wedge];
 
 /// Why a picture cannot be drawn, in one line.
@@ -58,19 +58,19 @@ impl<E: std::error::Error + Send + Sync> From<DrawingAreaErrorKind<E>> for PlotE
 }
 
 /// Fails with what a table is wrong in.
-pub fn plot_error<T>(message: impl Display) -> Result<T, PlotError> {
+pub(super) fn plot_error<T>(message: impl Display) -> Result<T, PlotError> {
     Err(PlotError(message.to_string()))
 }
 
 /// Outcome of drawing something.
-pub type Rendered = Result<(), PlotError>;
+pub(super) type Rendered = Result<(), PlotError>;
 
 /// A place on the picture, in points from its upper left corner.
-pub type Place = (f64, f64);
+pub(super) type Place = (f64, f64);
 
 /// Shape of a marker.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Shape {
+pub(super) enum Shape {
     /// A disc.
     Circle,
     /// A square on its side.
@@ -89,7 +89,7 @@ pub enum Shape {
 
 /// The marker style of a series: colour, shape, and whether it is hollow.
 #[derive(Debug, Clone, Copy)]
-pub struct MarkerStyle {
+pub(super) struct MarkerStyle {
     /// Colour of markers and lines.
     pub colour: RGBColor,
     /// Shape of markers.
@@ -100,14 +100,14 @@ pub struct MarkerStyle {
 
 impl MarkerStyle {
     /// The style of series number `at`.
-    pub fn of(at: usize) -> Self {
+    pub(super) fn of(at: usize) -> Self {
         Self { colour: PALETTE[at % PALETTE.len()], shape: SHAPES[at % SHAPES.len()], hollow: false }
     }
 }
 
 /// Where a text stands at its place: it ends, is centred or starts there.
 #[derive(Debug, Clone, Copy)]
-pub enum Anchor {
+pub(super) enum Anchor {
     /// Its start.
     Start,
     /// Its middle.
@@ -117,13 +117,13 @@ pub enum Anchor {
 }
 
 /// A picture that is being drawn.
-pub struct Canvas<'a> {
+pub(super) struct Canvas<'a> {
     /// The whole area, for axes.
     pub area: DrawingArea<SVGBackend<'a>, Shift>,
 }
 
 /// Points in the backend's units.
-pub fn fine(points: f64) -> i32 {
+pub(super) fn fine(points: f64) -> i32 {
     (points * FINE).round() as i32
 }
 
@@ -133,22 +133,22 @@ fn fine_place(place: Place) -> (i32, i32) {
 }
 
 /// Units of the backend in points.
-pub fn points(units: i32) -> f64 {
+pub(super) fn points(units: i32) -> f64 {
     f64::from(units) / FINE
 }
 
 /// A font of `size` points. The backend takes a size of a line, which is 1.24 times that of the font.
-pub fn font(size: f64) -> TextStyle<'static> {
+pub(super) fn font(size: f64) -> TextStyle<'static> {
     ("sans-serif", size * 1.24 * FINE).into_font().color(&INK)
 }
 
 /// A line of `width` points.
-pub fn stroke(colour: impl Color, width: f64) -> ShapeStyle {
+pub(super) fn stroke(colour: impl Color, width: f64) -> ShapeStyle {
     colour.stroke_width(fine(width).max(1) as u32)
 }
 
 /// About how wide a text is; fonts differ, and this is for one wider than most.
-pub fn text_width(text: &str, size: f64) -> f64 {
+pub(super) fn text_width(text: &str, size: f64) -> f64 {
     let em = |letter: char| match letter {
         ' ' | '.' | ',' | 'i' | 'j' | 'l' | 't' | 'f' | 'r' | '(' | ')' => 0.37,
         'm' | 'w' | 'M' | 'W' | '%' => 0.92,
@@ -159,7 +159,7 @@ pub fn text_width(text: &str, size: f64) -> f64 {
 }
 
 /// The SVG of a picture of some height.
-pub fn render_svg(height: f64, render: impl FnOnce(&Canvas) -> Rendered) -> Result<String, PlotError> {
+pub(super) fn render_svg(height: f64, render: impl FnOnce(&Canvas) -> Rendered) -> Result<String, PlotError> {
     let size = (fine(WIDTH) as u32, fine(height) as u32);
     let mut svg = String::new();
     {
@@ -175,7 +175,14 @@ pub fn render_svg(height: f64, render: impl FnOnce(&Canvas) -> Rendered) -> Resu
 
 impl Canvas<'_> {
     /// A text whose middle is at the height of its place.
-    pub fn text(&self, text: &str, at: Place, anchor: Anchor, size: f64, colour: RGBColor) -> Rendered {
+    pub(super) fn text(
+        &self,
+        text: &str,
+        at: Place,
+        anchor: Anchor,
+        size: f64,
+        colour: RGBColor,
+    ) -> Rendered {
         let side = match anchor {
             Anchor::Start => HPos::Left,
             Anchor::Middle => HPos::Center,
@@ -186,14 +193,14 @@ impl Canvas<'_> {
     }
 
     /// A text that is read upwards, centred at its place.
-    pub fn upwards(&self, text: &str, at: Place, size: f64) -> Rendered {
+    pub(super) fn upwards(&self, text: &str, at: Place, size: f64) -> Rendered {
         let centre = Pos::new(HPos::Center, VPos::Center);
         let style = font(size).transform(FontTransform::Rotate270).pos(centre);
         Ok(self.area.draw(&Text::new(text.to_owned(), fine_place(at), style))?)
     }
 
     /// A line through places; those in line with their neighbours are left out.
-    pub fn line(&self, places: &[Place], style: ShapeStyle) -> Rendered {
+    pub(super) fn line(&self, places: &[Place], style: ShapeStyle) -> Rendered {
         let mut kept: Vec<(i32, i32)> = Vec::new();
         for place in places.iter().map(|&place| fine_place(place)) {
             if let [.., a, b] = kept[..] {
@@ -210,7 +217,7 @@ impl Canvas<'_> {
     }
 
     /// A dashed straight line.
-    pub fn dashes(&self, from: Place, to: Place, style: ShapeStyle) -> Rendered {
+    pub(super) fn dashes(&self, from: Place, to: Place, style: ShapeStyle) -> Rendered {
         let length = (to.0 - from.0).hypot(to.1 - from.1);
         let along = |way: f64| {
             let share = (way / length).min(1.0);
@@ -225,13 +232,13 @@ impl Canvas<'_> {
     }
 
     /// A filled polygon.
-    pub fn fill(&self, corners: &[Place], colour: impl Color) -> Rendered {
+    pub(super) fn fill(&self, corners: &[Place], colour: impl Color) -> Rendered {
         let corners: Vec<_> = corners.iter().map(|&place| fine_place(place)).collect();
         Ok(self.area.draw(&Polygon::new(corners, colour.filled()))?)
     }
 
     /// A filled rectangle between opposite corners, at least a hair wide and high.
-    pub fn bar(&self, (x0, y0): Place, (x1, y1): Place, colour: impl Color) -> Rendered {
+    pub(super) fn bar(&self, (x0, y0): Place, (x1, y1): Place, colour: impl Color) -> Rendered {
         let widen = |a: f64, b: f64| {
             if (b - a).abs() < 1.5 { ((a + b) / 2.0 - 0.75, (a + b) / 2.0 + 0.75) } else { (a, b) }
         };
@@ -240,7 +247,7 @@ impl Canvas<'_> {
     }
 
     /// A marker of about `radius` points.
-    pub fn marker(&self, (x, y): Place, radius: f64, style: MarkerStyle) -> Rendered {
+    pub(super) fn marker(&self, (x, y): Place, radius: f64, style: MarkerStyle) -> Rendered {
         let line = stroke(style.colour, if style.hollow { 1.4 } else { 1.6 });
         let around = |corners: &[Place]| -> Vec<Place> {
             corners.iter().map(|(dx, dy)| (x + radius * dx, y + radius * dy)).collect()

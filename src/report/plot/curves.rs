@@ -16,7 +16,7 @@ use super::values::{check, distinct, few};
 use crate::analysis::published::Mark;
 
 /// What a figure shows.
-pub struct Kind {
+pub(super) struct Kind {
     /// Whether against p rather than d.
     by_coordination: bool,
     /// Whether rates of trees rather than means of the ARI.
@@ -24,13 +24,13 @@ pub struct Kind {
 }
 
 /// Figures 8a and 8b.
-pub const ARI_BY_DIMENSION: Kind = Kind { by_coordination: false, rates: false };
+pub(super) const ARI_BY_DIMENSION: Kind = Kind { by_coordination: false, rates: false };
 /// Figures 10a and 10b.
-pub const TREE_BY_DIMENSION: Kind = Kind { by_coordination: false, rates: true };
+pub(super) const TREE_BY_DIMENSION: Kind = Kind { by_coordination: false, rates: true };
 /// Figure 11a.
-pub const ARI_BY_COORDINATION: Kind = Kind { by_coordination: true, rates: false };
+pub(super) const ARI_BY_COORDINATION: Kind = Kind { by_coordination: true, rates: false };
 /// Figure 11b.
-pub const TREE_BY_COORDINATION: Kind = Kind { by_coordination: true, rates: true };
+pub(super) const TREE_BY_COORDINATION: Kind = Kind { by_coordination: true, rates: true };
 
 const Y_LABELS: f64 = 50.0;
 /// The same where they are percentages.
@@ -133,7 +133,7 @@ fn style(row: &CurveRow, methods: &[&str]) -> MarkerStyle {
 }
 
 /// A figure with one panel and a series for each method and way of counting.
-pub fn render(rows: &[CurveRow], kind: &Kind, mark: Option<&Mark>) -> Result<String, PlotError> {
+pub(super) fn render(rows: &[CurveRow], kind: &Kind, mark: Option<&Mark>) -> Result<String, PlotError> {
     kind.check(rows)?;
     let methods = few("method", rows.iter().map(|row| row.method.as_str()))?;
     let all = series(rows);
@@ -197,7 +197,7 @@ fn legend(
 }
 
 /// Figure 8a: a panel for each method, a series for each number of clusters.
-pub fn baselines(rows: &[CurveRow], mark: Option<&Mark>) -> Result<String, PlotError> {
+pub(super) fn baselines(rows: &[CurveRow], mark: Option<&Mark>) -> Result<String, PlotError> {
     let kind = ARI_BY_DIMENSION;
     kind.check(rows)?;
     let mut methods: Vec<&str> = Vec::new();

@@ -12,7 +12,7 @@ const GAP: f64 = 14.0;
 
 /// How an entry's key is drawn.
 #[derive(Debug, Clone, Copy)]
-pub enum Key {
+pub(super) enum Key {
     /// A marker of a radius.
     Marker(MarkerStyle, f64),
     /// A marker on a line with an interval.
@@ -30,15 +30,15 @@ pub enum Key {
 }
 
 /// Opacity of bands and bars behind the data.
-pub const FAINT: f64 = 0.28;
+pub(super) const FAINT: f64 = 0.28;
 
 /// Keys and what they mean.
 #[derive(Debug, Default)]
-pub struct Legend(pub Vec<(Key, String)>);
+pub(super) struct Legend(pub Vec<(Key, String)>);
 
 impl Legend {
     /// Adds an entry.
-    pub fn add(&mut self, key: Key, text: impl Into<String>) {
+    pub(super) fn add(&mut self, key: Key, text: impl Into<String>) {
         self.0.push((key, text.into()));
     }
 
@@ -59,12 +59,12 @@ impl Legend {
     }
 
     /// Height that the legend takes at the top of a picture.
-    pub fn height(&self) -> f64 {
+    pub(super) fn height(&self) -> f64 {
         self.layout().1
     }
 
     /// Draws the legend at the top of the picture.
-    pub fn render(&self, canvas: &Canvas) -> Rendered {
+    pub(super) fn render(&self, canvas: &Canvas) -> Rendered {
         for ((key, text), (x, y)) in self.0.iter().zip(self.layout().0) {
             let (left, right, middle) = (x, x + KEY - 6.0, x + KEY / 2.0 - 3.0);
             match *key {

@@ -9,13 +9,13 @@ use super::values::{check, distinct};
 use crate::settings::MAX_LISTED;
 
 /// Radius of a sensor's marker.
-pub const SENSOR: f64 = 2.5;
+pub(super) const SENSOR: f64 = 2.5;
 /// Radius of a joint's marker.
-pub const JOINT: f64 = 5.0;
+pub(super) const JOINT: f64 = 5.0;
 
 /// What the groups of a map are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Grouping {
+pub(super) enum Grouping {
     /// The parts that sensors sit on.
     Parts,
     /// The clusters that were estimated.
@@ -23,16 +23,16 @@ pub enum Grouping {
 }
 
 /// A joint, as the paper draws it.
-pub fn joint() -> MarkerStyle {
+pub(super) fn joint() -> MarkerStyle {
     MarkerStyle { colour: INK, shape: Shape::Circle, hollow: true }
 }
 
 /// The groups on a map, whether its points can be drawn being checked.
-pub struct Groups(Vec<usize>);
+pub(super) struct Groups(Vec<usize>);
 
 impl Groups {
     /// Checks the rows of a map of so many dimensions.
-    pub fn of(rows: &[MapRow], dims: usize) -> Result<Self, PlotError> {
+    pub(super) fn of(rows: &[MapRow], dims: usize) -> Result<Self, PlotError> {
         check("coordinate", rows.iter().flat_map(|row| [row.x1, row.x2]), -1e6, 1e6)?;
         check("coordinate", rows.iter().filter_map(|row| row.x3), -1e6, 1e6)?;
         if rows.iter().any(|row| row.x3.is_some() != (dims == 3)) {
@@ -49,7 +49,7 @@ impl Groups {
     }
 
     /// How a point is drawn, and how large.
-    pub fn style(&self, row: &MapRow) -> (MarkerStyle, f64) {
+    pub(super) fn style(&self, row: &MapRow) -> (MarkerStyle, f64) {
         match row.kind {
             MapPoint::Joint => (joint(), JOINT),
             MapPoint::Sensor => {
@@ -60,7 +60,7 @@ impl Groups {
     }
 
     /// What the styles mean.
-    pub fn legend(&self, rows: &[MapRow], grouping: Grouping) -> Legend {
+    pub(super) fn legend(&self, rows: &[MapRow], grouping: Grouping) -> Legend {
         let mut legend = Legend::default();
         let what = if grouping == Grouping::Parts { "part" } else { "cluster" };
         for (at, group) in self.0.iter().enumerate().take(MAX_LISTED) {
@@ -77,7 +77,7 @@ impl Groups {
 }
 
 /// Figures 6a and 6c.
-pub fn render(rows: &[MapRow], grouping: Grouping) -> Result<String, PlotError> {
+pub(super) fn render(rows: &[MapRow], grouping: Grouping) -> Result<String, PlotError> {
     let groups = Groups::of(rows, 2)?;
     let legend = groups.legend(rows, grouping);
     let top = legend.height() + 4.0;

@@ -40,7 +40,7 @@ impl View {
 }
 
 /// Figures 6b and 6d.
-pub fn render(rows: &[MapRow], grouping: Grouping) -> Result<String, PlotError> {
+pub(super) fn render(rows: &[MapRow], grouping: Grouping) -> Result<String, PlotError> {
     let groups = Groups::of(rows, 3)?;
     let legend = groups.legend(rows, grouping);
     let top = legend.height();

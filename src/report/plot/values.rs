@@ -4,7 +4,7 @@ use super::canvas::{PlotError, plot_error};
 use crate::settings::MAX_LISTED;
 
 /// Whether all values can be placed on a picture.
-pub fn check(
+pub(super) fn check(
     what: &str,
     values: impl IntoIterator<Item = f64>,
     low: f64,
@@ -17,7 +17,7 @@ pub fn check(
 }
 
 /// The different values, in order.
-pub fn distinct<T: PartialOrd>(values: impl IntoIterator<Item = T>) -> Vec<T> {
+pub(super) fn distinct<T: PartialOrd>(values: impl IntoIterator<Item = T>) -> Vec<T> {
     let mut values: Vec<T> = values.into_iter().collect();
     values.sort_by(|a, b| a.partial_cmp(b).unwrap_or(std::cmp::Ordering::Equal));
     values.dedup_by(|a, b| a == b);
@@ -25,7 +25,10 @@ pub fn distinct<T: PartialOrd>(values: impl IntoIterator<Item = T>) -> Vec<T> {
 }
 
 /// [`distinct`] values that each need a panel, a style or a column of their own.
-pub fn few<T: PartialOrd>(what: &str, values: impl IntoIterator<Item = T>) -> Result<Vec<T>, PlotError> {
+pub(super) fn few<T: PartialOrd>(
+    what: &str,
+    values: impl IntoIterator<Item = T>,
+) -> Result<Vec<T>, PlotError> {
     let values = distinct(values);
     if values.len() > MAX_LISTED {
         return plot_error(format!(

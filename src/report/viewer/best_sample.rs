@@ -29,7 +29,7 @@ struct Joined {
 const FILES: [&str; 3] = ["samples.csv", "assignments.npy", "trees.csv"];
 
 /// Whether a folder is one that `infer` wrote.
-pub fn is_in(folder: &Path) -> bool {
+pub(super) fn is_in(folder: &Path) -> bool {
     FILES.iter().all(|name| folder.join(name).is_file())
 }
 
@@ -37,7 +37,7 @@ pub fn is_in(folder: &Path) -> bool {
 ///
 /// # Errors
 /// If a file cannot be read, or the files do not fit each other.
-pub fn read(folder: &Path, sensors: usize) -> Result<Parts, FileError> {
+pub(super) fn read(folder: &Path, sensors: usize) -> Result<Parts, FileError> {
     let [samples, assignments, trees] = FILES.map(|name| folder.join(name));
     let draws: Vec<SampleRow> = read_rows(&samples)?;
     let (rows, columns, labels) = npy::read_assignments(&assignments)?;

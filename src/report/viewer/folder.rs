@@ -20,7 +20,7 @@ use crate::stages::usable::usable;
 
 /// Where the files of a scene are.
 #[derive(Debug, Clone, Copy)]
-pub struct Sources<'a> {
+pub(crate) struct Sources<'a> {
     /// The folder.
     pub folder: &'a Path,
     /// Pressures, if they are not in the folder.
@@ -33,7 +33,7 @@ pub struct Sources<'a> {
 ///
 /// # Errors
 /// If there are no pressures, or files do not fit each other.
-pub fn read(sources: &Sources, settings: &Settings) -> Result<Scene, FileError> {
+pub(crate) fn read(sources: &Sources, settings: &Settings) -> Result<Scene, FileError> {
     let folder = sources.folder;
     let tactile = tactile(sources)?;
     let touch = read_touch(&tactile)?;

@@ -6,7 +6,7 @@ use crate::stages::sense::Tactile;
 
 /// Times that are shown: `count` samples from `first` on, each `every` samples after the other.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Frames {
+pub(crate) struct Frames {
     /// The first sample.
     pub first: usize,
     /// Samples from one to the next.
@@ -17,19 +17,19 @@ pub struct Frames {
 
 impl Frames {
     /// Room for the frames of a page, bytes.
-    pub const ROOM: usize = 1_000_000;
+    pub(crate) const ROOM: usize = 1_000_000;
 
     /// Most frames of one movement.
     const MOST: usize = 600;
 
     /// Samples from one frame to the next, for about 0.2 s between them; 1 where the time between samples is not known.
-    pub fn every(interval: Option<f64>) -> usize {
+    pub(crate) fn every(interval: Option<f64>) -> usize {
         interval.map_or(1, |interval| (0.2 / interval).round().clamp(1.0, 1e6) as usize)
     }
 
     /// Frames of some pressures and of so many solids, from the first sample at which a sensor feels anything else than at first. `bytes`
     /// is the room for them: a frame takes a byte for each sensor, and the place and turn of each solid.
-    pub fn of(touch: &Tactile, solids: usize, every: usize, bytes: usize) -> Self {
+    pub(crate) fn of(touch: &Tactile, solids: usize, every: usize, bytes: usize) -> Self {
         const SOLID: usize = 14;
         let changes = |series: &[f32]| {
             let known = || series.iter().enumerate().filter(|(_, pressure)| pressure.is_finite());
@@ -44,12 +44,12 @@ impl Frames {
     }
 
     /// The pressures that are shown, of all sensors at one time after the other.
-    pub fn of_touch(self, touch: &Tactile) -> Vec<f32> {
+    pub(crate) fn of_touch(self, touch: &Tactile) -> Vec<f32> {
         self.samples().flat_map(|sample| touch.series().map(move |series| series[sample])).collect()
     }
 
     /// The samples that are shown.
-    pub fn samples(self) -> impl Iterator<Item = usize> + Clone {
+    pub(crate) fn samples(self) -> impl Iterator<Item = usize> + Clone {
         let all: Range<usize> = 0..self.count;
         all.map(move |at| self.first + at * self.every)
     }

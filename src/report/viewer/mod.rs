@@ -1,10 +1,10 @@
 //! Show a body that moves, what its skin feels, its map and its tree, in a page that a browser draws without a network.
 
 mod best_sample;
-pub mod folder;
-pub mod frames;
-pub mod page;
-pub mod scene;
-pub mod sketch;
-pub mod stored;
+pub(crate) mod folder;
+pub(crate) mod frames;
+pub(crate) mod page;
+pub(crate) mod scene;
+pub(crate) mod sketch;
+pub(crate) mod stored;
 mod text;

@@ -13,13 +13,13 @@ const PROGRAMS: [&str; 5] = [
 ];
 
 /// Its style.
-pub const STYLE: &str = include_str!("viewer.css");
+pub(crate) const STYLE: &str = include_str!("viewer.css");
 
 /// A page may load nothing, from nowhere.
-pub const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'";
+pub(crate) const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'";
 
 /// A page with nothing but the viewer.
-pub fn page(title: &str, scenes: &[Value]) -> String {
+pub(crate) fn page(title: &str, scenes: &[Value]) -> String {
     html! {
         (DOCTYPE)
         html lang="en" {
@@ -42,7 +42,7 @@ pub fn page(title: &str, scenes: &[Value]) -> String {
 }
 
 /// The viewer of one or more movements, between which its reader can switch; each as [`super::scene::Scene::data`] gives it.
-pub fn section(scenes: &[Value]) -> Markup {
+pub(crate) fn section(scenes: &[Value]) -> Markup {
     // Within a script, "</" would end it.
     let data =
         serde_json::to_string(scenes).expect("plain data can be written as JSON").replace("</", "<\\/");

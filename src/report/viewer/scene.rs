@@ -13,7 +13,7 @@ use crate::stages::tree::{Edge, Truth};
 
 /// Everything that is shown of one movement.
 #[derive(Debug, Clone)]
-pub struct Scene {
+pub(crate) struct Scene {
     /// What tells it from the others of its page, such as `p = 0.9`.
     pub name: String,
     /// Times that are shown.
@@ -38,7 +38,7 @@ pub struct Scene {
 
 /// Parts and the tree over them.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Parts {
+pub(crate) struct Parts {
     /// Part of each sensor; `None` for one that was left out.
     pub of: Vec<Option<usize>>,
     /// Edges of the tree.
@@ -47,7 +47,7 @@ pub struct Parts {
 
 /// An edge between two parts.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct TreeEdge {
+pub(crate) struct TreeEdge {
     /// The one end.
     pub child: usize,
     /// The other end.
@@ -58,13 +58,13 @@ pub struct TreeEdge {
 
 impl Parts {
     /// The true ones.
-    pub fn of_truth(Truth { labels, tree }: &Truth) -> Self {
+    pub(crate) fn of_truth(Truth { labels, tree }: &Truth) -> Self {
         let edge = |&(child, parent): &(usize, usize)| TreeEdge { child, parent, support: None };
         Self { of: labels.iter().copied().map(Some).collect(), tree: tree.iter().map(edge).collect() }
     }
 
     /// Those of one posterior sample, which says nothing of how sure an edge is.
-    pub fn of_sample(Sample { labels, tree, .. }: &Sample) -> Self {
+    pub(crate) fn of_sample(Sample { labels, tree, .. }: &Sample) -> Self {
         let edge = |&Edge { child, parent }: &Edge| TreeEdge { child, parent, support: None };
         Self { of: labels.iter().copied().map(Some).collect(), tree: tree.iter().map(edge).collect() }
     }
@@ -72,7 +72,7 @@ impl Parts {
 
 impl Scene {
     /// The data, as `viewer.js` reads them.
-    pub fn data(&self) -> Value {
+    pub(crate) fn data(&self) -> Value {
         let Self { name, frames, times, interval, sensors, body, map, truth, estimate, .. } = self;
         json!({
             "name": name,

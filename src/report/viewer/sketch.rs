@@ -5,7 +5,7 @@ use crate::stages::distance::Distances;
 
 /// The classical map of three dimensions of `count` sensors, of which `mapped` have the distances; the others have no place, and NaN for
 /// it. `None` where the distances tell nothing apart, which is no mistake.
-pub fn sketch(distances: &Distances, of: MapOf, mapped: &[usize], count: usize) -> Option<BodyMap> {
+pub(crate) fn sketch(distances: &Distances, of: MapOf, mapped: &[usize], count: usize) -> Option<BodyMap> {
     const DIMS: usize = 3;
     if mapped.len() <= DIMS {
         return None;

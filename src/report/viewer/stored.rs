@@ -11,17 +11,17 @@ use crate::files::{FileError, read_text};
 const FOLDER: &str = "scenes";
 
 /// Name of the file of a scene within a folder of results.
-pub fn name(coordination: f64) -> String {
+pub(crate) fn name(coordination: f64) -> String {
     format!("{FOLDER}/p-{coordination}.json")
 }
 
 /// What the file of a scene holds, which [`super::scene::Scene::data`] gives.
-pub fn text(data: &Value) -> String {
+pub(crate) fn text(data: &Value) -> String {
     format!("{data}\n")
 }
 
 /// Names of the files of all scenes of a folder of results, p rising.
-pub fn names(folder: &Path) -> Vec<String> {
+pub(crate) fn names(folder: &Path) -> Vec<String> {
     let Ok(entries) = fs::read_dir(folder.join(FOLDER)) else { return Vec::new() };
     let coordination = |name: &str| name.strip_prefix("p-")?.strip_suffix(".json")?.parse::<f64>().ok();
     let named = |name: String| Some((coordination(&name)?, name));
@@ -35,7 +35,7 @@ pub fn names(folder: &Path) -> Vec<String> {
 ///
 /// # Errors
 /// If a file is malformed.
-pub fn read(folder: &Path) -> Result<Vec<Value>, FileError> {
+pub(crate) fn read(folder: &Path) -> Result<Vec<Value>, FileError> {
     let read = |name: String| {
         let path = folder.join(name);
         let wrong =

@@ -4,14 +4,14 @@ use serde::Serialize;
 
 /// Numbers as whole ones of two bytes, little-endian, in base64: each is `scale` times what is written.
 #[derive(Debug, Serialize)]
-pub struct Packed {
+pub(super) struct Packed {
     scale: f64,
     data: String,
 }
 
 impl Packed {
     /// Packs numbers to a 32,767th of the largest. One that is not finite becomes 0.
-    pub fn of(numbers: impl Iterator<Item = f64> + Clone) -> Self {
+    pub(super) fn of(numbers: impl Iterator<Item = f64> + Clone) -> Self {
         let finite = numbers.clone().filter(|number| number.is_finite());
         let largest = finite.fold(0.0, |largest: f64, number| largest.max(number.abs()));
         let scale = if largest > 0.0 { largest / f64::from(i16::MAX) } else { 1.0 };
@@ -23,7 +23,7 @@ impl Packed {
 }
 
 /// Bytes in base64 (RFC 4648, with padding).
-pub fn base64(bytes: &[u8]) -> String {
+pub(super) fn base64(bytes: &[u8]) -> String {
     const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
     for three in bytes.chunks(3) {

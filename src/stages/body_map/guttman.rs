@@ -26,7 +26,7 @@ const MIN_BLOCKS: usize = 32;
 
 /// A map on its way to less stress.
 #[derive(Debug)]
-pub struct Guttman {
+pub(super) struct Guttman {
     /// The distances of each block with itself and with all that follow, 0 where the last block has no point.
     tiles: Vec<Tile>,
     points: Points,
@@ -36,7 +36,7 @@ pub struct Guttman {
 
 impl Guttman {
     /// Begins at a map of as many points as the distances have, which must be finite and symmetric.
-    pub fn new(distances: &Distances, map: &BodyMap) -> Self {
+    pub(super) fn new(distances: &Distances, map: &BodyMap) -> Self {
         let points = Points::new(map);
         let shares = (0..SHARES).map(|_| Sums::zeros(&points)).collect();
         Self { tiles: tiles(distances), points, shares }
@@ -44,7 +44,7 @@ impl Guttman {
 
     /// Moves every point by the Guttman transform; returns raw stress, the sum over pairs of (distance − distance within
     /// the map)², as it was before.
-    pub fn step(&mut self) -> f64 {
+    pub(super) fn step(&mut self) -> f64 {
         let (tiles, points) = (&self.tiles, &self.points);
         let blocks = points.blocks();
         self.shares.par_iter_mut().enumerate().for_each(|(share, sums)| {
@@ -66,12 +66,12 @@ impl Guttman {
     }
 
     /// Σ ‖x_i‖.
-    pub fn norms(&self) -> f64 {
+    pub(super) fn norms(&self) -> f64 {
         self.points.squared_norms().map(|square| square.sqrt()).sum()
     }
 
     /// The map, in the unit of the distances.
-    pub fn map(&self) -> BodyMap {
+    pub(super) fn map(&self) -> BodyMap {
         let dims = self.points.dims;
         let places = (0..self.points.count).flat_map(|i| (0..dims).map(move |k| (i, k)));
         BodyMap { dims, coordinates: places.map(|(i, k)| self.points.get(i, k)).collect() }

@@ -14,7 +14,7 @@ use crate::stages::distance::Distances;
 /// distances within the first map: so the scale is that map's, whatever the unit of the given distances, of which only
 /// the order matters.
 #[derive(Debug)]
-pub struct Monotone {
+pub(super) struct Monotone {
     /// Where each pair i < j stands in an n × n matrix, by rising distance.
     order: Vec<usize>,
     /// n × n: where the pair stands in `order`; on the diagonal, the length of `order`.
@@ -36,7 +36,7 @@ pub struct Monotone {
 impl Monotone {
     /// In: the given distances, which must be symmetric; those within the first map, n × n, and the sum of their squares over
     /// pairs.
-    pub fn new(distances: &Distances, within: &[f64], squares: f64) -> Self {
+    pub(super) fn new(distances: &Distances, within: &[f64], squares: f64) -> Self {
         let (n, given) = (distances.sensors, &distances.values);
         let mut order: Vec<usize> = (0..n).flat_map(|i| (i + 1..n).map(move |j| i * n + j)).collect();
         order.par_sort_unstable_by(|&a, &b| given[a].total_cmp(&given[b]).then(a.cmp(&b)));
@@ -59,7 +59,7 @@ impl Monotone {
     }
 
     /// Regresses the distances within a map on the order of the given ones.
-    pub fn fit(&mut self, within: &[f64]) {
+    pub(super) fn fit(&mut self, within: &[f64]) {
         for tie in &self.ties {
             let by_distance = |a: &usize, b: &usize| within[*a].total_cmp(&within[*b]).then(a.cmp(b));
             self.order[tie.clone()].sort_unstable_by(by_distance);

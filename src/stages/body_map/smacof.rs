@@ -227,7 +227,7 @@ fn pull(sums: &mut [f64; LANES], own: [f64; LANES], weights: &[f64], points: &[[
 }
 
 /// n × n: Euclidean distances within a map; exactly symmetric.
-pub fn euclidean(map: &BodyMap) -> Vec<f64> {
+pub(super) fn euclidean(map: &BodyMap) -> Vec<f64> {
     let mut within = vec![0.0; map.points().pow(2)];
     euclidean_into(&mut within, map);
     within

@@ -8,13 +8,13 @@ use crate::stages::quantise::Symbols;
 
 /// Sensors whose pairs with as many others are counted together, so that their planes stay in the cache:
 /// a tile has 2 × 8 × 3 × T / 8 bytes at N = 4.
-pub const TILE: usize = 8;
+pub(super) const TILE: usize = 8;
 
 /// 512 samples.
 type Lanes = [u64; 8];
 
 /// For each sensor and each level but 0, one bit for each sample.
-pub struct BitPlanes {
+pub(super) struct BitPlanes {
     /// Planes of one sensor, N − 1.
     each: usize,
     /// Length of one plane.
@@ -29,7 +29,7 @@ const BLOCK: usize = 4;
 
 impl BitPlanes {
     /// Of all sensors.
-    pub fn new(symbols: &Symbols) -> Self {
+    pub(super) fn new(symbols: &Symbols) -> Self {
         let (each, length) = (symbols.levels - 1, symbols.samples.div_ceil(512));
         let mut bits = vec![[0; 8]; symbols.sensors().next_multiple_of(TILE) * each * length];
         bits.par_chunks_exact_mut(each * length)
@@ -51,7 +51,7 @@ impl BitPlanes {
     }
 
     /// How often each symbol of each sensor occurs.
-    pub fn marginals(&self, symbols: &Symbols) -> Vec<Vec<u32>> {
+    pub(super) fn marginals(&self, symbols: &Symbols) -> Vec<Vec<u32>> {
         let planes = self.bits.par_chunks_exact(self.each * self.length).take(symbols.sensors());
         let marginal = |planes: &[Lanes]| {
             let ones =
@@ -65,7 +65,7 @@ impl BitPlanes {
     }
 
     /// Counts together all planes of the tiles of sensors that start at `row` and `column`.
-    pub fn count(&self, row: usize, column: usize) -> Counted {
+    pub(super) fn count(&self, row: usize, column: usize) -> Counted {
         let size = TILE * self.each;
         let block = |tile: usize, start: usize| {
             std::array::from_fn(|k| &self.bits[(tile * self.each + start + k) * self.length..][..self.length])
@@ -84,7 +84,7 @@ impl BitPlanes {
 }
 
 /// Numbers of bits set in both planes of every pair from two tiles.
-pub struct Counted {
+pub(super) struct Counted {
     row: usize,
     column: usize,
     each: usize,
@@ -94,7 +94,7 @@ pub struct Counted {
 
 impl Counted {
     /// Joint counts of two sensors; those with level 0 follow from the marginal counts.
-    pub fn joint(&self, i: usize, j: usize, marginals: &[Vec<u32>], joint: &mut [u32]) {
+    pub(super) fn joint(&self, i: usize, j: usize, marginals: &[Vec<u32>], joint: &mut [u32]) {
         let (levels, size) = (self.each + 1, TILE * self.each);
         joint[..levels].copy_from_slice(&marginals[j]);
         for x in 1..levels {
@@ -127,7 +127,7 @@ pulp::simd_type! {
 }
 
 /// Whether this processor counts the bits of eight words at once.
-pub fn counts_by_eight() -> bool {
+pub(super) fn counts_by_eight() -> bool {
     #[cfg(target_arch = "x86_64")]
     return CountsBits::try_new().is_some();
     #[cfg(not(target_arch = "x86_64"))]

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use crate::stages::quantise::Symbols;
 
 /// The times at which each sensor's symbol changes.
-pub struct Changes<'a> {
+pub(super) struct Changes<'a> {
     symbols: &'a Symbols,
     /// For each sensor: every t > 0 at which its symbol is not that of t − 1, rising.
     times: Vec<Vec<u32>>,
@@ -18,7 +18,7 @@ pub struct Changes<'a> {
 
 impl<'a> Changes<'a> {
     /// Of all sensors; there must be a sample.
-    pub fn new(symbols: &'a Symbols) -> Self {
+    pub(super) fn new(symbols: &'a Symbols) -> Self {
         let times = |series: &[u8]| {
             (1..).zip(series.windows(2)).filter(|(_, pair)| pair[0] != pair[1]).map(|(t, _)| t).collect()
         };
@@ -26,14 +26,14 @@ impl<'a> Changes<'a> {
     }
 
     /// How many changes a sensor has on average.
-    pub fn mean(symbols: &Symbols) -> usize {
+    pub(super) fn mean(symbols: &Symbols) -> usize {
         let count = |series: &[u8]| series.windows(2).filter(|pair| pair[0] != pair[1]).count();
         let all: usize = symbols.values.par_chunks_exact(symbols.samples).map(count).sum();
         all / symbols.sensors().max(1)
     }
 
     /// Joint counts of two sensors.
-    pub fn joint(&self, i: usize, j: usize, joint: &mut [u32]) {
+    pub(super) fn joint(&self, i: usize, j: usize, joint: &mut [u32]) {
         let (first, second, levels) = (self.symbols.of(i), self.symbols.of(j), self.symbols.levels);
         joint.fill(0);
         // Modulo 2³², in which the counts themselves are.

@@ -12,14 +12,14 @@ use crate::stages::quantise::Symbols;
 const WORD: usize = 64;
 
 /// For each sensor, a bit for each sample at which its symbol is not that of the one before.
-pub struct Stretches<'a> {
+pub(super) struct Stretches<'a> {
     symbols: &'a Symbols,
     changes: Vec<Vec<u64>>,
 }
 
 impl<'a> Stretches<'a> {
     /// Of all sensors; there must be a sample.
-    pub fn new(symbols: &'a Symbols) -> Self {
+    pub(super) fn new(symbols: &'a Symbols) -> Self {
         let changes = |series: &[u8]| {
             let mut bits = vec![0; series.len().div_ceil(WORD)];
             for (t, pair) in (1..).zip(series.windows(2)) {
@@ -31,7 +31,7 @@ impl<'a> Stretches<'a> {
     }
 
     /// Joint counts of two sensors.
-    pub fn joint(&self, i: usize, j: usize, joint: &mut [u32]) {
+    pub(super) fn joint(&self, i: usize, j: usize, joint: &mut [u32]) {
         let (first, second, levels) = (self.symbols.of(i), self.symbols.of(j), self.symbols.levels);
         joint.fill(0);
         let mut begin = 0;

@@ -26,7 +26,7 @@ const MAX_SWEEPS: usize = 3;
 ///
 /// `pairs` are clusters that may be the two ends of one part, which gain most together. Greedily, the cluster or pair by which
 /// the tree gains most information is assigned, as long as that is more than [`MIN_GAIN`]. Then each is tried on the other parts.
-pub fn assign(
+pub(super) fn assign(
     parts: &[MotionSubspace],
     unassigned: &[MotionSubspace],
     pairs: &[(usize, usize)],
@@ -78,7 +78,7 @@ pub fn assign(
 }
 
 /// Information, in nats, that the tree over the other parts gains if one is merged with the part that gains most by it.
-pub fn gain(parts: &[MotionSubspace], at: usize, samples: usize) -> f64 {
+pub(super) fn gain(parts: &[MotionSubspace], at: usize, samples: usize) -> f64 {
     let others: Vec<MotionSubspace> =
         parts.iter().enumerate().filter(|(place, _)| *place != at).map(|(_, own)| own.clone()).collect();
     let moments = CrossMoments::new(&others, &parts[at..=at], samples);

@@ -9,7 +9,7 @@ const RIDGE: f64 = 1e-5;
 const ITERATIONS: usize = 6;
 
 /// The quadratic forms of one part's motion.
-pub struct QuadraticForms {
+pub(super) struct QuadraticForms {
     /// Which two components of the motion each monomial is the product of, the second not before the first.
     pairs: Vec<(usize, usize)>,
     /// The size of each component of the motion.
@@ -22,7 +22,7 @@ pub struct QuadraticForms {
 
 impl QuadraticForms {
     /// From the moments of these monomials; `None` if the part feels nothing.
-    pub fn new(pairs: Vec<(usize, usize)>, mut moments: DMatrix<f64>) -> Option<Self> {
+    pub(super) fn new(pairs: Vec<(usize, usize)>, mut moments: DMatrix<f64>) -> Option<Self> {
         let n = moments.nrows();
         if n == 0 {
             return None;
@@ -83,7 +83,7 @@ impl QuadraticForms {
 /// `products` are sums over samples of the products of the monomials of both. The start is the first canonical correlation,
 /// without a constant, for a form is 0 at rest. Then each form is made semidefinite and regressed on the other, and the best
 /// iteration counts: a lower bound of the largest cosine.
-pub fn correlation(
+pub(super) fn correlation(
     first: &Option<QuadraticForms>,
     second: &Option<QuadraticForms>,
     products: &DMatrix<f64>,

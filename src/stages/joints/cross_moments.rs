@@ -12,7 +12,7 @@ use crate::stages::rigid_parts::{MotionSubspace, stratified};
 const MAX_SAMPLES: usize = 4000;
 
 /// A part with some unassigned clusters.
-pub struct Extended {
+pub(super) struct Extended {
     /// The clusters.
     pub clusters: Vec<usize>,
     /// Where its monomials are.
@@ -21,7 +21,7 @@ pub struct Extended {
 }
 
 /// Sums over samples of the products of monomials: of each part's motion, of each cluster's, and of one of each.
-pub struct CrossMoments {
+pub(super) struct CrossMoments {
     sums: DMatrix<f64>,
     /// Where the monomials of a part, of two clusters, and of a part and a cluster are.
     of_part: Vec<Range<usize>>,
@@ -34,7 +34,7 @@ pub struct CrossMoments {
 
 impl CrossMoments {
     /// Of the motions of parts and of unassigned clusters at the same T samples.
-    pub fn new(parts: &[MotionSubspace], unassigned: &[MotionSubspace], samples: usize) -> Self {
+    pub(super) fn new(parts: &[MotionSubspace], unassigned: &[MotionSubspace], samples: usize) -> Self {
         let chosen: Vec<usize> = stratified(samples, MAX_SAMPLES).collect();
         let scales = scales(parts, samples);
         let mut columns: Vec<Vec<f64>> = Vec::new();
@@ -62,19 +62,19 @@ impl CrossMoments {
     }
 
     /// Number of parts.
-    pub fn parts(&self) -> usize {
+    pub(super) fn parts(&self) -> usize {
         self.parts.len()
     }
 
     /// A part with these clusters.
-    pub fn extended(&self, part: usize, clusters: Vec<usize>) -> Extended {
+    pub(super) fn extended(&self, part: usize, clusters: Vec<usize>) -> Extended {
         let (places, pairs) = self.places(part, &clusters);
         let forms = QuadraticForms::new(pairs, self.select(&places, &places));
         Extended { clusters, places, forms }
     }
 
     /// The correlation of two parts.
-    pub fn correlation(&self, first: &Extended, second: &Extended) -> f64 {
+    pub(super) fn correlation(&self, first: &Extended, second: &Extended) -> f64 {
         correlation(&first.forms, &second.forms, &self.select(&first.places, &second.places))
     }
 

@@ -7,7 +7,7 @@ use crate::stages::rigid_parts::MotionSubspace;
 
 /// Planar parts in a row, each joined to the next: the motion that the sides of each feel, velocity across and angular velocity;
 /// and the motion that its ends feel, velocity along.
-pub fn row(parts: usize, samples: usize) -> (Vec<MotionSubspace>, Vec<MotionSubspace>) {
+pub(super) fn row(parts: usize, samples: usize) -> (Vec<MotionSubspace>, Vec<MotionSubspace>) {
     let mut rng = stream(1, 1, "row", 0);
     let mut across = vec![Vec::new(); parts];
     let mut along = vec![Vec::new(); parts];

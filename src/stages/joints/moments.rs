@@ -11,7 +11,7 @@ const REST: f64 = 1e-3;
 
 /// Sums over samples of the products of all quadratic monomials of all motions, by blocks of samples.
 #[derive(Debug, Clone)]
-pub struct Moments {
+pub(super) struct Moments {
     /// Where the monomials of each part begin, and where the last end.
     starts: Vec<usize>,
     /// For each block, monomials × monomials.
@@ -23,7 +23,7 @@ impl Moments {
     ///
     /// A monomial is w_i w_j divided by the root of the whole body's Σ |w|² at the sample, so that fast movements count in
     /// proportion to speed, not to its square.
-    pub fn new(motions: &[MotionSubspace], samples: usize, blocks: usize) -> Self {
+    pub(super) fn new(motions: &[MotionSubspace], samples: usize, blocks: usize) -> Self {
         let mut starts = vec![0];
         for MotionSubspace { rank: k, .. } in motions {
             starts.push(starts[starts.len() - 1] + k * (k + 1) / 2);
@@ -53,17 +53,17 @@ impl Moments {
     }
 
     /// Number of blocks; none if nothing moves.
-    pub fn blocks(&self) -> usize {
+    pub(super) fn blocks(&self) -> usize {
         self.blocks.len()
     }
 
     /// The [`correlation`] of each pair of parts over all samples: parts × parts, 0 to 1, symmetric, 1 on the diagonal.
-    pub fn correlations(&self) -> DMatrix<f64> {
+    pub(super) fn correlations(&self) -> DMatrix<f64> {
         self.resampled_correlations(&vec![1; self.blocks()])
     }
 
     /// The same over a bootstrap resample that has each block so many times.
-    pub fn resampled_correlations(&self, counts: &[usize]) -> DMatrix<f64> {
+    pub(super) fn resampled_correlations(&self, counts: &[usize]) -> DMatrix<f64> {
         let moments = self.sum(counts);
         let parts = self.starts.len() - 1;
         let length = |part: usize| self.starts[part + 1] - self.starts[part];
@@ -93,13 +93,13 @@ impl Moments {
 }
 
 /// The monomials of k components, as pairs of which the second is not before the first.
-pub fn monomials(k: usize) -> Vec<(usize, usize)> {
+pub(super) fn monomials(k: usize) -> Vec<(usize, usize)> {
     (0..k).flat_map(|i| (i..k).map(move |j| (i, j))).collect()
 }
 
 /// The factor of the monomials at each sample: one over the root of the whole body's Σ |w|² there and of its mean; 0 if nothing
 /// moves.
-pub fn scales(motions: &[MotionSubspace], samples: usize) -> Vec<f64> {
+pub(super) fn scales(motions: &[MotionSubspace], samples: usize) -> Vec<f64> {
     let energy = |t: usize| -> f64 { motions.iter().flat_map(|motion| motion.at(t)).map(|w| w * w).sum() };
     let energies: Vec<f64> = (0..samples).into_par_iter().map(energy).collect();
     let mean = energies.iter().sum::<f64>() / samples.max(1) as f64;

@@ -35,7 +35,7 @@ type Members = BTreeMap<usize, Vec<usize>>;
 /// A cluster is assigned to the part that the joints tell; if none does, each of its sensors to the part with the smallest
 /// residual. In: M × T pressures, of any sign, and the parts and unassigned clusters of their sensors. Out: parts without
 /// unassigned clusters, named by appearance, and their tree.
-pub fn refine(tactile: &Tactile, mut parts: RigidParts, rng: &mut impl Rng) -> (RigidParts, Joints) {
+pub(crate) fn refine(tactile: &Tactile, mut parts: RigidParts, rng: &mut impl Rng) -> (RigidParts, Joints) {
     let mut refinement = Refinement::new(tactile);
     let (mut refined, names, motions) = loop {
         let mut refined = parts.clone();

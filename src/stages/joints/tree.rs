@@ -111,7 +111,7 @@ pub fn joints(
 }
 
 /// The tree of [`joints`] without its support, which takes longest of a short recording.
-pub fn joint_tree(tactile: &Tactile, labels: &[Option<usize>]) -> Vec<Edge> {
+pub(crate) fn joint_tree(tactile: &Tactile, labels: &[Option<usize>]) -> Vec<Edge> {
     let (parts, motions) = parts_and_motions(tactile, labels, None);
     let moments = Moments::new(&motions, tactile.samples, blocks(tactile.samples));
     labelled(&maximum_spanning_tree(&moments.correlations()), &parts)
@@ -150,7 +150,7 @@ fn labelled(tree: &[Edge], labels: &[usize]) -> Vec<Edge> {
 }
 
 /// The tree of greatest total correlation.
-pub fn maximum_spanning_tree(correlations: &DMatrix<f64>) -> Vec<Edge> {
+pub(super) fn maximum_spanning_tree(correlations: &DMatrix<f64>) -> Vec<Edge> {
     let nodes: Vec<usize> = (0..correlations.nrows()).collect();
     prim(&nodes, |child, parent| -correlations[(child, parent)])
 }

@@ -118,7 +118,7 @@ fn draw_labels_in_lanes(
 }
 
 /// log N(x_i; μ, Σ) of each point.
-pub fn log_densities(points: &Points, gaussian: &Gaussian) -> Vec<f64> {
+pub(crate) fn log_densities(points: &Points, gaussian: &Gaussian) -> Vec<f64> {
     let mut densities = Vec::with_capacity(points.count.next_multiple_of(BLOCK));
     vectorised(
         #[inline(always)]

@@ -12,10 +12,10 @@ use nalgebra::{DMatrix, DVector};
 use crate::numerics::simd::vectorised;
 
 /// Numbers that are computed side by side.
-pub const LANES: usize = 8;
+pub(super) const LANES: usize = 8;
 
 /// A piece of a row.
-pub type Chunk = [f64; LANES];
+pub(super) type Chunk = [f64; LANES];
 
 /// A matrix over (x, 1), x in d dimensions: symmetric or upper triangular, of which the upper triangle is
 /// kept, or the rows (P, −P μ) of a Gaussian.
@@ -28,7 +28,7 @@ pub struct Augmented {
 }
 
 /// Chunks of a row.
-pub fn chunks(dims: usize) -> usize {
+pub(super) fn chunks(dims: usize) -> usize {
     (dims + 1).div_ceil(LANES)
 }
 

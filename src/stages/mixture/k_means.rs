@@ -35,7 +35,7 @@ pub fn k_means(map: &BodyMap, clusters: usize, restarts: usize, rng: &mut Stream
 
 /// Lloyd's algorithm from one start: assigns points to the nearest centre and moves centres to the means of
 /// their points until no label changes.
-pub fn lloyd(points: &Points, clusters: usize, rng: &mut impl Rng) -> Partition {
+pub(crate) fn lloyd(points: &Points, clusters: usize, rng: &mut impl Rng) -> Partition {
     let mut centres = starts(points, clusters, rng);
     let mut labels = Vec::new();
     let mut inertia = 0.0;

@@ -6,7 +6,7 @@ use super::augmented::{Augmented, Chunk, LANES, chunks};
 use crate::stages::body_map::BodyMap;
 
 /// Points of a block, evaluated side by side, so that the loop over them becomes vector instructions.
-pub const BLOCK: usize = 32;
+pub(super) const BLOCK: usize = 32;
 
 /// n points in d dimensions, centred on their mean.
 #[derive(Debug, Clone)]

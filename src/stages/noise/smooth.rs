@@ -14,7 +14,7 @@ const MAX_RESIDUAL: f64 = 1.5;
 const TOUCH_LIMIT: [f64; 2] = [0.5, 3.5];
 
 /// Puts lines in the place of pressures, and 0 where they are within the noise. `size` is the middle of the sizes of second differences.
-pub fn smooth(series: &mut [f32], size: f32) {
+pub(super) fn smooth(series: &mut [f32], size: f32) {
     let size = f64::from(size);
     let sums = sums(series);
     let windows = HALF_WIDTHS.map(Windows::new);

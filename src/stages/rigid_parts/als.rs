@@ -9,7 +9,7 @@ use pulp::{Arch, Simd, WithSimd};
 use super::regressions::{LANES, Regressions};
 
 /// Roots of some sensors, samples × sensors, whose loadings c and motion w are updated in turn.
-pub struct Als<'a> {
+pub(super) struct Als<'a> {
     /// All roots, by sensor.
     values: Vec<&'a [f64]>,
     /// At each sample, the least root that is felt; infinite after the last sample.
@@ -18,7 +18,7 @@ pub struct Als<'a> {
 
 impl<'a> Als<'a> {
     /// Of roots, samples × sensors, which are felt from the threshold of their sample on.
-    pub fn new(values: MatRef<'a, f64>, thresholds: &[f64]) -> Self {
+    pub(super) fn new(values: MatRef<'a, f64>, thresholds: &[f64]) -> Self {
         let column =
             |sensor| values.col(sensor).try_as_col_major().expect("roots are kept by sensor").as_slice();
         let padded = [thresholds, &[f64::INFINITY; LANES]].concat();
@@ -28,7 +28,7 @@ impl<'a> Als<'a> {
     /// Updates w at each sample by least squares over its informative roots, by w as it was.
     ///
     /// In: c, sensors × k. In and out: w, samples × k.
-    pub fn update_motion(&self, loadings: MatRef<'_, f64>, motion: &mut Mat<f64>) {
+    pub(super) fn update_motion(&self, loadings: MatRef<'_, f64>, motion: &mut Mat<f64>) {
         let loadings = by_row(loadings);
         match motion.ncols() {
             0 => (),
@@ -45,7 +45,7 @@ impl<'a> Als<'a> {
     /// Updates c of each sensor by least squares over its informative roots, by c as it was.
     ///
     /// In and out: c, sensors × k. In: w, samples × k.
-    pub fn update_loadings(&self, mut loadings: MatMut<'_, f64>, motion: &Mat<f64>) {
+    pub(super) fn update_loadings(&self, mut loadings: MatMut<'_, f64>, motion: &Mat<f64>) {
         let mut rows = by_row(loadings.as_ref());
         let k = motion.ncols();
         match k {
@@ -65,7 +65,7 @@ impl<'a> Als<'a> {
 
     /// Residual sum of squares of the informative roots, and its degrees of freedom: informative roots beyond the k that w
     /// takes. Both are averages over samples.
-    pub fn residual(&self, loadings: MatRef<'_, f64>, motion: &Mat<f64>) -> [f64; 2] {
+    pub(super) fn residual(&self, loadings: MatRef<'_, f64>, motion: &Mat<f64>) -> [f64; 2] {
         let work = Residual { als: self, loadings: &by_row(loadings), motion };
         Arch::new().dispatch(work).map(|sum| sum / motion.nrows() as f64)
     }

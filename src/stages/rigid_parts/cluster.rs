@@ -11,14 +11,14 @@ use super::stratified::stratified;
 use crate::numerics::eigen::largest;
 
 /// Sensors of a cluster that its motion is learned from, spread over all.
-pub const MAX_SENSORS: usize = 64;
+pub(super) const MAX_SENSORS: usize = 64;
 /// Tolerance, as a share of a sensor's mean square: more residual variance is encoded as noise is, and less costs little.
-pub const TOLERANCE: f64 = 0.01;
+pub(super) const TOLERANCE: f64 = 0.01;
 /// How many higher ranks in a row must be longer so that none higher is tried: one may have had a bad start.
 const PATIENCE: usize = 2;
 
 /// A cluster of sensors.
-pub struct Cluster {
+pub(super) struct Cluster {
     /// In ascending order.
     pub sensors: Vec<usize>,
     /// Those that the motion is learned from.
@@ -31,7 +31,7 @@ pub struct Cluster {
 
 impl Cluster {
     /// Learns the motion of sensors in so many iterations, with the rank, of `least` and more, of the shortest description.
-    pub fn new(roots: &Roots, sensors: Vec<usize>, least: usize, iterations: usize) -> Self {
+    pub(super) fn new(roots: &Roots, sensors: Vec<usize>, least: usize, iterations: usize) -> Self {
         let representatives: Vec<usize> =
             stratified(sensors.len(), MAX_SENSORS).map(|at| sensors[at]).collect();
         let own = roots.select(&representatives);
@@ -60,7 +60,7 @@ impl Cluster {
     }
 
     /// The union of two clusters.
-    pub fn union(roots: &Roots, a: &Self, b: &Self, iterations: usize) -> Self {
+    pub(super) fn union(roots: &Roots, a: &Self, b: &Self, iterations: usize) -> Self {
         let mut sensors = [a.sensors.as_slice(), &b.sensors].concat();
         sensors.sort_unstable();
         // Iterations from the motions of both would end near these. That is no better than from the start, and merges seed
@@ -69,7 +69,7 @@ impl Cluster {
     }
 
     /// Whether the residual variance is more than `most`, so that one motion does not explain what the sensors feel.
-    pub fn is_mixed(&self, most: f64) -> bool {
+    pub(super) fn is_mixed(&self, most: f64) -> bool {
         self.fit.residual > most * self.fit.freedom
     }
 }

@@ -20,17 +20,17 @@ const OPPOSITE: (f64, f64) = (-0.2, 0.1);
 const ROUNDING: f64 = 1e-10;
 
 /// The faces that these sensors are on, each together with its opposite. Each is rising, in the order of their first sensors.
-pub fn faces(roots: &Roots, sensors: &[usize]) -> Vec<Vec<usize>> {
+pub(super) fn faces(roots: &Roots, sensors: &[usize]) -> Vec<Vec<usize>> {
     linked(roots, sensors, |correlation| correlation.abs() > LINKED)
 }
 
 /// The groups of these sensors that feel the same.
-pub fn similar(roots: &Roots, sensors: &[usize]) -> Vec<Vec<usize>> {
+pub(crate) fn similar(roots: &Roots, sensors: &[usize]) -> Vec<Vec<usize>> {
     linked(roots, sensors, |correlation| correlation > SIMILAR)
 }
 
 /// The pairs of groups of which one rests while the other feels, as the two ends of a cylinder do.
-pub fn opposite_pairs(roots: &Roots, groups: &[&[usize]]) -> Vec<(usize, usize)> {
+pub(crate) fn opposite_pairs(roots: &Roots, groups: &[&[usize]]) -> Vec<(usize, usize)> {
     let all = groups.concat();
     let similarity = Similarity::new(&roots.select(&all));
     let mut first = 0;
@@ -59,7 +59,7 @@ fn linked(roots: &Roots, sensors: &[usize], is_linked: impl Fn(f64) -> bool) -> 
 }
 
 /// The connected components of 0, …, n − 1, each rising, in the order of their first.
-pub fn connected_components(n: usize, is_linked: impl Fn(usize, usize) -> bool) -> Vec<Vec<usize>> {
+pub(super) fn connected_components(n: usize, is_linked: impl Fn(usize, usize) -> bool) -> Vec<Vec<usize>> {
     let mut left: Vec<usize> = (0..n).collect();
     let mut found = Vec::new();
     while !left.is_empty() {

@@ -15,7 +15,7 @@ use super::roots::{Roots, product};
 use crate::numerics::eigen::largest;
 
 /// Largest rank of a motion subspace: velocity and angular velocity of a rigid body are six numbers.
-pub const MAX_RANK: usize = 6;
+pub(crate) const MAX_RANK: usize = 6;
 /// Iterations in which c is found from given w, or w from given c: each updates which roots are informative.
 const ITERATIONS: usize = 4;
 /// Share of the largest eigenvalue of cᵀ c from which on an axis counts as spanned.
@@ -24,7 +24,7 @@ const SPANNED: f64 = 1e-12;
 const SENSORS: usize = 64;
 
 /// c of some sensors and w at some samples, up to six components by descending variance: where the iterations start.
-pub struct Start {
+pub(crate) struct Start {
     /// Sensors × components.
     loadings: Mat<f64>,
     /// Samples × components.
@@ -32,7 +32,7 @@ pub struct Start {
 }
 
 /// c of some sensors and w at some samples.
-pub struct Fit {
+pub(crate) struct Fit {
     /// Sensors × k; the columns are orthonormal.
     loadings: Mat<f64>,
     /// Samples × k.
@@ -45,43 +45,43 @@ pub struct Fit {
 
 impl Start {
     /// Largest rank that can be fitted, at most [`MAX_RANK`].
-    pub fn max_rank(&self) -> usize {
+    pub(crate) fn max_rank(&self) -> usize {
         self.loadings.ncols()
     }
 }
 
 impl Fit {
     /// k, the rank of the motion subspace.
-    pub fn rank(&self) -> usize {
+    pub(crate) fn rank(&self) -> usize {
         self.loadings.ncols()
     }
 
     /// Number of sensors.
-    pub fn sensors(&self) -> usize {
+    pub(crate) fn sensors(&self) -> usize {
         self.loadings.nrows()
     }
 
     /// Number of samples.
-    pub fn samples(&self) -> usize {
+    pub(crate) fn samples(&self) -> usize {
         self.motion.nrows()
     }
 
     /// The sum of w wᵀ over samples, k × k.
-    pub fn scatter(&self) -> Mat<f64> {
+    pub(crate) fn scatter(&self) -> Mat<f64> {
         product(self.motion.transpose(), self.motion.as_ref())
     }
 }
 
 impl Roots {
     /// Where the iterations start: the principal components of series that are linear in the motion.
-    pub fn start(&self) -> Start {
+    pub(crate) fn start(&self) -> Start {
         let linear = if self.signed { self.values.clone() } else { self.differences() };
         let loadings = principal_axes(&product(linear.transpose(), linear.as_ref()));
         Start { motion: product(linear.as_ref(), loadings.as_ref()), loadings }
     }
 
     /// Finds c and w of a rank, at most that of the start, in so many iterations.
-    pub fn fit(&self, start: &Start, rank: usize, iterations: usize) -> Fit {
+    pub(crate) fn fit(&self, start: &Start, rank: usize, iterations: usize) -> Fit {
         let iterations = if self.signed { 1 } else { iterations };
         let mut loadings = start.loadings.subcols(0, rank).to_owned();
         let mut motion = start.motion.subcols(0, rank).to_owned();
@@ -97,12 +97,12 @@ impl Roots {
     }
 
     /// Residual sum of squares of a fit over all roots, as a share of their sum of squares.
-    pub fn total_residual(&self, fit: &Fit) -> f64 {
+    pub(crate) fn total_residual(&self, fit: &Fit) -> f64 {
         self.residuals_of_samples(fit).iter().sum::<f64>() / self.values.squared_norm_l2()
     }
 
     /// Residual sum of squares of a fit at each sample.
-    pub fn residuals_of_samples(&self, fit: &Fit) -> Vec<f64> {
+    pub(crate) fn residuals_of_samples(&self, fit: &Fit) -> Vec<f64> {
         let mut residuals = vec![0.0; self.samples()];
         let predictions = product(fit.motion.as_ref(), fit.loadings.transpose());
         for sensor in 0..self.sensors() {
@@ -120,7 +120,7 @@ impl Roots {
     }
 
     /// w at all samples from given c, of a fit to the same sensors at other samples: T × k, by sample.
-    pub fn motion(&self, fit: &Fit) -> Vec<f64> {
+    pub(crate) fn motion(&self, fit: &Fit) -> Vec<f64> {
         let k = fit.rank();
         let mut motion = Mat::zeros(self.samples(), k);
         let als = Als::new(self.values.as_ref(), &self.thresholds);
@@ -129,7 +129,7 @@ impl Roots {
     }
 
     /// The best c of each sensor for w of a fit to any sensors at these samples: sensors × k.
-    pub fn loadings(&self, fit: &Fit) -> Mat<f64> {
+    pub(crate) fn loadings(&self, fit: &Fit) -> Mat<f64> {
         self.some_loadings(fit, 0, self.sensors())
     }
 
@@ -143,7 +143,7 @@ impl Roots {
 
     /// Residual variance of each sensor with its best c, as a share of its mean square, for w of a fit to any sensors at these
     /// samples; 1 if it feels nothing.
-    pub fn residuals(&self, fit: &Fit) -> Vec<f64> {
+    pub(crate) fn residuals(&self, fit: &Fit) -> Vec<f64> {
         let firsts: Vec<usize> = (0..self.sensors()).step_by(SENSORS).collect();
         let residuals = |sensor: usize| {
             let count = SENSORS.min(self.sensors() - sensor);

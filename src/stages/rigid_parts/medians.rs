@@ -4,13 +4,13 @@
 const MEDIANS: f64 = 3.0;
 
 /// The largest residual that is no outlier: three times the median, or `least`, whichever is more.
-pub fn outlier_limit(mut residuals: Vec<f64>, least: f64) -> f64 {
+pub(crate) fn outlier_limit(mut residuals: Vec<f64>, least: f64) -> f64 {
     residuals.sort_by(f64::total_cmp);
     residuals.get(residuals.len() / 2).map_or(least, |median| f64::max(least, MEDIANS * median))
 }
 
 /// The size of the cluster that the median sensor is in: the median of sizes, each counted once for each of its sensors.
-pub fn typical_size(mut sizes: Vec<usize>) -> usize {
+pub(crate) fn typical_size(mut sizes: Vec<usize>) -> usize {
     sizes.sort_unstable();
     let half = sizes.iter().sum::<usize>().div_ceil(2);
     let mut below = 0;

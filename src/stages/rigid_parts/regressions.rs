@@ -5,12 +5,12 @@ use crate::numerics::simd::vectorised;
 /// Ridge, as a share of the mean square of the regressors: it decides where a regression is underdetermined.
 const RIDGE: f64 = 1e-6;
 /// Regressions that are solved at once, one in each lane.
-pub const LANES: usize = 32;
+pub(super) const LANES: usize = 32;
 /// One number of each regression.
 type Lanes = [f64; LANES];
 
 /// Normal equations of regressions on K regressors.
-pub struct Regressions<const K: usize> {
+pub(super) struct Regressions<const K: usize> {
     /// Sums of the products of two regressors, the second not after the first.
     pub squares: [[Lanes; K]; K],
     /// Sums of the products of a regressor with the response; the coefficients, once they are solved.
@@ -19,12 +19,12 @@ pub struct Regressions<const K: usize> {
 
 impl<const K: usize> Regressions<K> {
     /// Without any observation.
-    pub fn new() -> Self {
+    pub(super) fn new() -> Self {
         Self { squares: [[[0.0; LANES]; K]; K], products: [[0.0; LANES]; K] }
     }
 
     /// Replaces the products by the coefficients, which are nearly 0 where the equations are singular.
-    pub fn solve(&mut self) {
+    pub(super) fn solve(&mut self) {
         let Self { squares, products } = self;
         vectorised(
             #[inline(always)]

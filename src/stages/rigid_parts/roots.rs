@@ -18,7 +18,7 @@ const FELT: f64 = 0.1;
 const SIGNED: f64 = 0.01;
 
 /// Roots of the pressures on some sensors at some samples.
-pub struct Roots {
+pub(crate) struct Roots {
     /// Samples × sensors, √Pa, or normalised.
     pub values: Mat<f64>,
     /// At each sample, the least root that is felt.
@@ -29,7 +29,7 @@ pub struct Roots {
 
 impl Roots {
     /// Of series of pressures, at these samples.
-    pub fn at(series: &[&[f32]], samples: &[usize], signed: bool) -> Self {
+    pub(crate) fn at(series: &[&[f32]], samples: &[usize], signed: bool) -> Self {
         let root = |pressure: f32| match signed {
             true => f64::from(pressure.abs()).sqrt().copysign(f64::from(pressure)),
             false => f64::from(pressure.max(0.0)).sqrt(),
@@ -53,12 +53,12 @@ impl Roots {
     }
 
     /// Of these sensors only.
-    pub fn select(&self, sensors: &[usize]) -> Self {
+    pub(crate) fn select(&self, sensors: &[usize]) -> Self {
         Self::new(columns(&self.values, sensors), self.signed)
     }
 
     /// Divided by the root mean square of each sensor, where it feels anything.
-    pub fn normalised(mut self) -> Self {
+    pub(crate) fn normalised(mut self) -> Self {
         for sensor in 0..self.sensors() {
             let roots = self.values.col_as_slice_mut(sensor);
             let scale = (roots.iter().map(|root| root * root).sum::<f64>() / roots.len() as f64).sqrt();
@@ -70,7 +70,7 @@ impl Roots {
     }
 
     /// Averages over samples: of the products of two sensors' roots, sensors × sensors, and of each sensor's roots.
-    pub fn moments(&self) -> (Mat<f64>, Vec<f64>) {
+    pub(crate) fn moments(&self) -> (Mat<f64>, Vec<f64>) {
         let share = 1.0 / self.samples().max(1) as f64;
         let mean = |sensor| self.values.col_as_slice(sensor).iter().sum::<f64>() * share;
         let means = (0..self.sensors()).map(mean).collect();
@@ -78,23 +78,23 @@ impl Roots {
     }
 
     /// Number of sensors.
-    pub fn sensors(&self) -> usize {
+    pub(crate) fn sensors(&self) -> usize {
         self.values.ncols()
     }
 
     /// Number of samples.
-    pub fn samples(&self) -> usize {
+    pub(crate) fn samples(&self) -> usize {
         self.values.nrows()
     }
 
     /// Whether nothing is felt.
-    pub fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.values.norm_max() == 0.0
     }
 
     /// Each sensor's root minus that of the sensor that feels least at the same samples: linear in w without censoring, if the
     /// two are opposite to each other and never feel at the same sample.
-    pub fn differences(&self) -> Mat<f64> {
+    pub(crate) fn differences(&self) -> Mat<f64> {
         let together = product(self.values.transpose(), self.values.as_ref());
         let opposite = |sensor: usize| {
             let alive = (0..self.sensors()).filter(|other| together[(*other, *other)] > 0.0);
@@ -107,7 +107,7 @@ impl Roots {
 }
 
 /// The product of two matrices on one thread, whatever faer's global setting: sums depend on the number of threads.
-pub fn product(left: MatRef<'_, f64>, right: MatRef<'_, f64>) -> Mat<f64> {
+pub(super) fn product(left: MatRef<'_, f64>, right: MatRef<'_, f64>) -> Mat<f64> {
     let mut product = Mat::zeros(left.nrows(), right.ncols());
     matmul(product.as_mut(), Accum::Replace, left, right, 1.0, Par::Seq);
     product
@@ -119,7 +119,7 @@ fn columns(matrix: &Mat<f64>, which: &[usize]) -> Mat<f64> {
 }
 
 /// Whether negative pressures are signal, not noise about 0.
-pub fn is_signed(tactile: &Tactile) -> bool {
+pub(crate) fn is_signed(tactile: &Tactile) -> bool {
     let sums = |series: &[f32]| {
         series.iter().fold((0.0, 0.0), |(below, all), pressure| {
             let size = f64::from(pressure.abs());

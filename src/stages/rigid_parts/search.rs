@@ -15,18 +15,18 @@ use crate::numerics::partition::named_by_appearance;
 use crate::stages::distance::Distances;
 
 /// Iterations in which the motion of a cluster is learned: of the many seed clusters, and of the few parts.
-pub const ITERATIONS: [usize; 2] = [4, 16];
+pub(super) const ITERATIONS: [usize; 2] = [4, 16];
 /// Nats per sample that a merge of parts must save: it must show that they share a component.
-pub const MIN_SAVING: f64 = 1.0;
+pub(super) const MIN_SAVING: f64 = 1.0;
 /// Degrees of freedom of its residual that a part must have per sample. With fewer, any sensors fit.
-pub const MIN_FREEDOM: f64 = 1.0;
+pub(super) const MIN_FREEDOM: f64 = 1.0;
 /// Most iterations in which sensors are assigned.
 const MAX_ASSIGNMENTS: usize = 10;
 /// Most iterations of merging and assigning.
 const MAX_ALTERNATIONS: usize = 4;
 
 /// Sensors whose clusters are searched for.
-pub struct Search<'a> {
+pub(super) struct Search<'a> {
     /// Their roots.
     pub roots: Roots,
     /// Distances between them.
@@ -37,12 +37,12 @@ pub struct Search<'a> {
 
 impl Search<'_> {
     /// The cluster of these sensors.
-    pub fn cluster(&self, sensors: Vec<usize>) -> Cluster {
+    pub(super) fn cluster(&self, sensors: Vec<usize>) -> Cluster {
         Cluster::new(&self.roots, sensors, 1, self.iterations)
     }
 
     /// Clusters of these members; those that are known are not learned again.
-    pub fn clusters(&self, members: Vec<Vec<usize>>, known: Vec<Cluster>) -> Vec<Cluster> {
+    pub(super) fn clusters(&self, members: Vec<Vec<usize>>, known: Vec<Cluster>) -> Vec<Cluster> {
         let mut known: BTreeMap<Vec<usize>, Cluster> =
             known.into_iter().map(|cluster| (cluster.sensors.clone(), cluster)).collect();
         let found: Vec<_> = members.into_iter().map(|own| (known.remove(&own), own)).collect();
@@ -50,7 +50,7 @@ impl Search<'_> {
     }
 
     /// Alternates merging, of each cluster with its `near` nearest, and assigning, until nothing changes.
-    pub fn alternated(&self, mut clusters: Vec<Cluster>, near: usize) -> Vec<Cluster> {
+    pub(super) fn alternated(&self, mut clusters: Vec<Cluster>, near: usize) -> Vec<Cluster> {
         for _ in 0..MAX_ALTERNATIONS {
             let before = labels_of(&clusters);
             clusters = self.assigned(self.merged(clusters, near, MIN_SAVING, 0), true);
@@ -63,7 +63,13 @@ impl Search<'_> {
 
     /// Merges the pair of clusters that saves most, again and again, as long as it saves more than `margin` nats. Pairs are each
     /// cluster and its `near` nearest; the first `fixed` clusters are not merged with each other.
-    pub fn merged(&self, clusters: Vec<Cluster>, near: usize, margin: f64, fixed: usize) -> Vec<Cluster> {
+    pub(super) fn merged(
+        &self,
+        clusters: Vec<Cluster>,
+        near: usize,
+        margin: f64,
+        fixed: usize,
+    ) -> Vec<Cluster> {
         let mut name = clusters.len();
         let mut clusters: BTreeMap<usize, Cluster> = clusters.into_iter().enumerate().collect();
         let mut unions: BTreeMap<(usize, usize), Cluster> = BTreeMap::new();
@@ -138,7 +144,7 @@ impl Search<'_> {
     /// Assigns each sensor to the cluster with the smallest residual, and learns the motions again, until no sensor changes.
     ///
     /// With `only_parts`, clusters that cannot be parts are dropped: those that are too small or of too low a rank.
-    pub fn assigned(&self, mut clusters: Vec<Cluster>, only_parts: bool) -> Vec<Cluster> {
+    pub(super) fn assigned(&self, mut clusters: Vec<Cluster>, only_parts: bool) -> Vec<Cluster> {
         for _ in 0..MAX_ASSIGNMENTS {
             let mut sizes: Vec<usize> =
                 clusters.iter().map(|cluster| cluster.representatives.len()).collect();
@@ -167,14 +173,14 @@ impl Search<'_> {
 }
 
 /// The sensors of each cluster.
-pub fn members(labels: &[usize]) -> Vec<Vec<usize>> {
+pub(super) fn members(labels: &[usize]) -> Vec<Vec<usize>> {
     let mut members = vec![Vec::new(); labels.iter().max().map_or(0, |last| last + 1)];
     labels.iter().enumerate().for_each(|(sensor, &label)| members[label].push(sensor));
     members
 }
 
 /// The cluster of each sensor, by appearance.
-pub fn labels_of(clusters: &[Cluster]) -> Vec<usize> {
+pub(super) fn labels_of(clusters: &[Cluster]) -> Vec<usize> {
     let mut labels = vec![0; clusters.iter().map(|cluster| cluster.sensors.len()).sum()];
     for (at, cluster) in clusters.iter().enumerate() {
         cluster.sensors.iter().for_each(|&sensor| labels[sensor] = at);
@@ -183,6 +189,6 @@ pub fn labels_of(clusters: &[Cluster]) -> Vec<usize> {
 }
 
 /// The first of the smallest numbers, and its place.
-pub fn smallest(values: impl Iterator<Item = f64>) -> Option<(usize, f64)> {
+pub(super) fn smallest(values: impl Iterator<Item = f64>) -> Option<(usize, f64)> {
     values.enumerate().reduce(|best, other| if other.1 < best.1 { other } else { best })
 }

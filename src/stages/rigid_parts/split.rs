@@ -11,7 +11,7 @@ const MAX_RESIDUAL: f64 = 0.05;
 
 impl Observations<'_> {
     /// Splits clusters, and those that they are split into, until one motion explains each.
-    pub fn split(&self, mut labels: Vec<usize>) -> Vec<usize> {
+    pub(super) fn split(&self, mut labels: Vec<usize>) -> Vec<usize> {
         let mut left = members(&labels);
         let mut next = left.len();
         while let Some(cluster) = left.pop() {

@@ -11,7 +11,7 @@ use super::search::{ITERATIONS, Search, labels_of, members};
 use crate::numerics::linkage;
 
 /// Sensors of a seed cluster on average: for each start.
-pub const SEED_SIZES: [usize; 3] = [6, 9, 12];
+pub(super) const SEED_SIZES: [usize; 3] = [6, 9, 12];
 /// Fewest sensors that several parts can be estimated from: two seed clusters.
 pub const MIN_SENSORS: usize = 2 * SEED_SIZES[0];
 /// Most seed clusters.
@@ -23,7 +23,7 @@ impl Observations<'_> {
     /// The clusters of some sensors, from starts with seed clusters of these sizes, as a label of each sensor.
     ///
     /// `samples` are those for seed clusters, and those for parts.
-    pub fn clustered(
+    pub(super) fn clustered(
         &self,
         sensors: &[usize],
         samples: &[Vec<usize>; 2],

@@ -3,7 +3,7 @@
 /// At most `most` of 0, …, n − 1, rising: one of each stretch of equal length.
 ///
 /// The place within a stretch changes, so that nothing periodic, such as the sensors of a ring, is always met at one phase.
-pub fn stratified(n: usize, most: usize) -> impl Iterator<Item = usize> {
+pub(crate) fn stratified(n: usize, most: usize) -> impl Iterator<Item = usize> {
     let count = n.min(most);
     (0..count).map(move |at| {
         let (from, to) = (at * n / count, (at + 1) * n / count);

@@ -16,13 +16,13 @@ const ITERATIONS: usize = 16;
 /// Share of what the best rank explains that a lower rank may leave unexplained.
 const NEGLIGIBLE: f64 = 0.01;
 /// Rank from which on the sensors of a face say something of how a part rotates. The end of a thin cylinder has rank one.
-pub const ROTATION_RANK: usize = 3;
+pub(super) const ROTATION_RANK: usize = 3;
 /// Rank of a face from which on its motion may tell it from other faces: more than the end of a thin cylinder has.
-pub const FACE_RANK: usize = 2;
+pub(super) const FACE_RANK: usize = 2;
 
 /// The motion subspace of a part: a basis of it, which is the motion of the part up to a linear map.
 #[derive(Debug, Clone, PartialEq)]
-pub struct MotionSubspace {
+pub(crate) struct MotionSubspace {
     /// k, at most [`MAX_RANK`] if it is that of one cluster of sensors; 0 if these feel nothing.
     pub rank: usize,
     /// w, T × k, by sample, in √Pa; along the principal axes of what the sensors feel.
@@ -34,7 +34,7 @@ impl MotionSubspace {
     ///
     /// `rank` is k; without it, the lowest that explains nearly what the best one does. `signed` says whether negative pressures
     /// are signal.
-    pub fn of_cluster(series: &[&[f32]], rank: Option<usize>, signed: bool) -> Self {
+    pub(crate) fn of_cluster(series: &[&[f32]], rank: Option<usize>, signed: bool) -> Self {
         /// Samples whose roots are in memory at once.
         const BLOCK: usize = 240;
         let series: Vec<&[f32]> =
@@ -57,7 +57,7 @@ impl MotionSubspace {
     /// sensors would hardly count among the rest.
     ///
     /// Where these ranks sum up to more than [`MAX_RANK`], faces share components, and one subspace is learned from all sensors.
-    pub fn of_part(series: &[&[f32]], signed: bool) -> Self {
+    pub(crate) fn of_part(series: &[&[f32]], signed: bool) -> Self {
         let samples = series.first().map_or(0, |series| series.len());
         let some: Vec<usize> = stratified(samples, MAX_SAMPLES).collect();
         let every: Vec<usize> = (0..series.len()).collect();
@@ -78,12 +78,12 @@ impl MotionSubspace {
     }
 
     /// w at a sample.
-    pub fn at(&self, t: usize) -> &[f64] {
+    pub(crate) fn at(&self, t: usize) -> &[f64] {
         &self.basis[t * self.rank..][..self.rank]
     }
 
     /// The sum of this subspace and another one at the same samples; components that both have count twice.
-    pub fn with(&self, other: &Self) -> Self {
+    pub(crate) fn with(&self, other: &Self) -> Self {
         if self.rank == 0 || other.rank == 0 {
             return if self.rank == 0 { other.clone() } else { self.clone() };
         }

@@ -27,7 +27,7 @@ type Group = (Vec<Vec<usize>>, f64);
 
 impl Search<'_> {
     /// The parts, and the unassigned clusters.
-    pub fn parts_and_unassigned(&self, clusters: Vec<Cluster>) -> (Vec<Cluster>, Vec<Cluster>) {
+    pub(super) fn parts_and_unassigned(&self, clusters: Vec<Cluster>) -> (Vec<Cluster>, Vec<Cluster>) {
         let most = most_residual(&clusters);
         let whole: Vec<Vec<usize>> = clusters.iter().map(|cluster| cluster.sensors.clone()).collect();
         let small = typical_size(whole.iter().map(Vec::len).collect()).div_ceil(2);

@@ -6,7 +6,7 @@ use crate::stages::mixture::Rounding as RoundingError;
 const MAX_MATRIX_ENTRIES: usize = 10_000_000;
 
 /// Maximum number of labels in all draws that are kept, 8 GB.
-pub const MAX_LABELS: usize = 1_000_000_000;
+pub(super) const MAX_LABELS: usize = 1_000_000_000;
 
 /// Whether the d × d matrices of K components fit the memory: K d² is at most 10 million.
 pub fn matrices_fit(components: usize, dims: usize) -> bool {

@@ -207,7 +207,7 @@ impl<'a> Chain<'a> {
 }
 
 /// The labels that a chain starts with, before anything else is drawn.
-pub fn start_labels(points: &Points, settings: &Schema, rng: &mut impl Rng) -> Vec<usize> {
+pub(super) fn start_labels(points: &Points, settings: &Schema, rng: &mut impl Rng) -> Vec<usize> {
     let components = settings.components;
     match settings.start.of_chain(0) {
         Start::Uniform => (0..points.count).map(|_| rng.random_range(0..components)).collect(),

@@ -4,18 +4,18 @@ use super::settings::{AngleError, AngularMomentum, Controller, Motion, Movement,
 use crate::stages::agent::{Agent, Geometry, Morphology, Skin};
 
 /// Everything that a simulation needs.
-pub struct Scene {
+pub(crate) struct Scene {
     pub geometry: Geometry,
     pub motion: Motion,
     pub physics: Physics,
 }
 
 /// Time between two samples, s.
-pub const INTERVAL: f64 = 0.1;
+pub(crate) const INTERVAL: f64 = 0.1;
 
 impl Scene {
     /// Five short thick parts in a row, moved by strong gains.
-    pub fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Self {
             geometry: Geometry {
                 morphology: Morphology::Chain,
@@ -48,7 +48,7 @@ impl Scene {
     }
 
     /// The body, with few sensors.
-    pub fn agent(&self) -> Agent {
+    pub(crate) fn agent(&self) -> Agent {
         Agent::new(&self.geometry, &Skin { around: 4, along: 1, caps: 0 })
     }
 }

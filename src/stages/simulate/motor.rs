@@ -18,7 +18,7 @@ use crate::stages::agent::{Freedom, Joint, Vector3};
 
 /// The state of every joint's motor.
 #[derive(Debug, Clone)]
-pub struct Motor {
+pub(super) struct Motor {
     /// How each joint turns.
     freedoms: Vec<Freedom>,
     /// Targets of the angles, rad, of a joint that moves; `None` where it is locked.
@@ -31,7 +31,7 @@ pub struct Motor {
 
 impl Motor {
     /// Motors of joints that are all locked, as a fresh [`World`] of steps of `step` s has them. Draws the rhythm, if there is one.
-    pub fn new(joints: &[Joint], motion: &Motion, step: f64, rng: &mut Stream) -> Self {
+    pub(super) fn new(joints: &[Joint], motion: &Motion, step: f64, rng: &mut Stream) -> Self {
         let freedoms = joints.iter().map(|joint| joint.freedom).collect();
         let draw = |rhythm| Oscillators::new(joints, rhythm, motion.targets, (motion.epoch, step), rng);
         let oscillators = motion.rhythm().map(draw);
@@ -39,7 +39,7 @@ impl Motor {
     }
 
     /// Draws for each joint whether it moves in the epoch that begins, and where to. Nothing is drawn for one that is fixed.
-    pub fn draw_targets(&mut self, world: &mut World, motion: &Motion, rng: &mut Stream) {
+    pub(super) fn draw_targets(&mut self, world: &mut World, motion: &Motion, rng: &mut Stream) {
         for (joint, (freedom, target)) in self.freedoms.iter().zip(&mut self.targets).enumerate() {
             if *freedom == Freedom::Fixed {
                 continue;
@@ -60,7 +60,7 @@ impl Motor {
     }
 
     /// Drives each axis that moves towards its target for the next step, and as fast as a target that moves does.
-    pub fn apply(&mut self, world: &mut World, motion: &Motion) {
+    pub(super) fn apply(&mut self, world: &mut World, motion: &Motion) {
         if let Some(oscillators) = &mut self.oscillators {
             oscillators.advance();
         }
@@ -96,7 +96,7 @@ impl Motor {
 
     /// Whether a joint is locked in this epoch, for the tests' statistics.
     #[cfg(test)]
-    pub fn is_locked(&self, joint: usize) -> bool {
+    pub(super) fn is_locked(&self, joint: usize) -> bool {
         self.targets[joint].is_none()
     }
 }

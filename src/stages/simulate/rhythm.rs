@@ -15,7 +15,7 @@ use crate::stages::agent::{Freedom, Joint, Vector3};
 
 /// The targets of all joints at a time of a rhythmic movement.
 #[derive(Debug, Clone)]
-pub struct Oscillators {
+pub(super) struct Oscillators {
     rhythm: Rhythm,
     /// Of each joint; 0 for axes that it does not have.
     axes: Vec<Axes>,
@@ -43,7 +43,7 @@ struct Axes {
 impl Oscillators {
     /// Those of some joints in epochs of so many steps, of which each takes `step` s. Draws amplitude and lag of each axis, joint by
     /// joint, or of each joint where its axes share their targets; then the frequencies of the first epoch.
-    pub fn new(
+    pub(super) fn new(
         joints: &[Joint],
         rhythm: &Rhythm,
         targets: Targets,
@@ -78,7 +78,7 @@ impl Oscillators {
     }
 
     /// Draws the frequency at the end of the epoch that begins.
-    pub fn begin_epoch(&mut self, rng: &mut Stream) {
+    pub(super) fn begin_epoch(&mut self, rng: &mut Stream) {
         let Rhythm { frequency_spread, frequency_time, .. } = self.rhythm;
         let decay = self.epoch as f64 * self.step / frequency_time;
         let [_, now] = self.deviations;
@@ -96,13 +96,13 @@ impl Oscillators {
     }
 
     /// Goes on by a step.
-    pub fn advance(&mut self) {
+    pub(super) fn advance(&mut self) {
         self.phase = (self.phase + TAU * self.frequency() * self.step) % TAU;
         self.passed += 1;
     }
 
     /// The target of a joint, rad: its angles or, of a ball joint, the vector of its rotation.
-    pub fn target(&self, joint: usize) -> Vector3 {
+    pub(super) fn target(&self, joint: usize) -> Vector3 {
         let Axes { amplitudes, lags } = self.axes[joint];
         [0, 1, 2].map(|axis| amplitudes[axis] * libm::sin(self.phase - lags[axis]))
     }

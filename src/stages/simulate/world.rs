@@ -22,7 +22,7 @@ mod joints;
 mod momentum;
 mod places;
 
-pub use self::joints::ball_error;
+pub(super) use self::joints::ball_error;
 
 /// Where a part is and how it is turned.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -57,7 +57,7 @@ pub struct Unstable {
 }
 
 /// A world with one agent, at rest at first, with all joints locked.
-pub struct World {
+pub(super) struct World {
     world: ode::dWorldID,
     threading: ode::dThreadingImplementationID,
     bodies: Vec<ode::dBodyID>,
@@ -153,7 +153,7 @@ impl World {
     ///
     /// Lengths, densities and the step must be in the ranges that [`crate::numerics::range`] and [`Physics::check`] state: that
     /// keeps out of ODE what it would abort on.
-    pub fn new(agent: &Agent, physics: &Physics) -> Self {
+    pub(super) fn new(agent: &Agent, physics: &Physics) -> Self {
         initialise();
         // SAFETY: handles are used only while `self` owns them.
         unsafe {
@@ -198,7 +198,7 @@ impl World {
     /// # Errors
     /// [`Unstable`] if a part turns by more than `physics.turn_limit` in a step, leaves the range of numbers, or makes
     /// the engine give up. The world is then of no more use.
-    pub fn step(&mut self) -> Result<(), Unstable> {
+    pub(super) fn step(&mut self) -> Result<(), Unstable> {
         if !self.surfaces.is_empty() {
             self.let_the_fluid_push();
         }
@@ -275,7 +275,7 @@ impl World {
     }
 
     /// Linear (m/s) and angular (rad/s) velocity of a part, in the world's frame.
-    pub fn velocity(&self, part: usize) -> (Vector3, Vector3) {
+    pub(super) fn velocity(&self, part: usize) -> (Vector3, Vector3) {
         // SAFETY: both pointers lead to three numbers of a live body, and are read at once.
         unsafe {
             (
@@ -286,7 +286,7 @@ impl World {
     }
 
     /// Position and rotation of a part.
-    pub fn pose(&self, part: usize) -> Pose {
+    pub(super) fn pose(&self, part: usize) -> Pose {
         // SAFETY: ODE keeps three numbers of position and three rows of four of rotation for a live body.
         let (position, rows) = unsafe {
             (
@@ -299,44 +299,44 @@ impl World {
 
     /// The angles of a joint, rad in [−π, π]: the parent relative to the child, 0 in the rest pose. Those that it does not have
     /// are 0; of a ball joint, they are the vector of that rotation.
-    pub fn angles(&self, joint: usize) -> Vector3 {
+    pub(super) fn angles(&self, joint: usize) -> Vector3 {
         self.joints[joint].angles()
     }
 
     /// Rates of its angles, rad/s; of a ball joint, about the axes of the parent's frame.
-    pub fn rates(&self, joint: usize) -> Vector3 {
+    pub(super) fn rates(&self, joint: usize) -> Vector3 {
         self.joints[joint].rates()
     }
 
     /// Applies torques about the axes of a joint for the next step, N·m.
-    pub fn apply_torques(&mut self, joint: usize, torques: Vector3) {
+    pub(super) fn apply_torques(&mut self, joint: usize, torques: Vector3) {
         debug_assert!(torques.iter().all(|torque| torque.is_finite()));
         self.joints[joint].apply_torques(torques);
     }
 
     /// Holds a joint at its present angles by a motor of zero velocity and unlimited torque.
-    pub fn lock(&mut self, joint: usize) {
+    pub(super) fn lock(&mut self, joint: usize) {
         self.set_motor(joint, [0.0; 3], f64::INFINITY);
     }
 
     /// Lets a joint turn freely.
-    pub fn unlock(&mut self, joint: usize) {
+    pub(super) fn unlock(&mut self, joint: usize) {
         self.set_motor(joint, [0.0; 3], 0.0);
     }
 
     /// Sets the motors of a joint's axes: the velocity that each strives for, rad/s, and its largest torque, N·m.
-    pub fn set_motor(&mut self, joint: usize, velocities: Vector3, torque: f64) {
+    pub(super) fn set_motor(&mut self, joint: usize, velocities: Vector3, torque: f64) {
         debug_assert!(velocities.iter().all(|velocity| velocity.is_finite()));
         self.joints[joint].set_motor(velocities, torque);
     }
 
     /// Largest distance between the two places that a joint's parts have its anchor at, m; 0 if no joint comes apart.
-    pub fn anchor_separation(&self) -> f64 {
+    pub(super) fn anchor_separation(&self) -> f64 {
         self.joints.iter().map(EngineJoint::separation).fold(0.0, f64::max)
     }
 
     /// How far the fastest part turns in a step at its rate after the last one, in turns.
-    pub fn turn(&self) -> f64 {
+    pub(super) fn turn(&self) -> f64 {
         self.rotation_squared.sqrt() * self.step / TAU
     }
 }

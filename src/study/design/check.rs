@@ -17,7 +17,7 @@ impl Design {
     ///
     /// # Errors
     /// What is wrong, with the key and what is allowed.
-    pub fn check(&self) -> Result<(), String> {
+    pub(crate) fn check(&self) -> Result<(), String> {
         self.check_kind()?;
         self.check_sections()?;
         self.check_names()?;
@@ -167,7 +167,7 @@ impl JudgedClaim {
     ///
     /// # Errors
     /// What is wrong.
-    pub fn check(&self, claims: &[Claim]) -> Result<(), String> {
+    pub(crate) fn check(&self, claims: &[Claim]) -> Result<(), String> {
         let (id, experiment) = (&self.id, self.experiment.name());
         if self.find(claims).is_none() {
             let rule = "is not a claim of that experiment with an accepted range for values of its samples";

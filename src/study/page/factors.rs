@@ -23,7 +23,7 @@ struct Study<'a> {
 }
 
 /// The section.
-pub fn section(results: &Results) -> Vec<String> {
+pub(super) fn section(results: &Results) -> Vec<String> {
     let study = Study::new(results);
     let mut lines = study.introduction();
     lines.extend(study.overview());
@@ -34,7 +34,7 @@ pub fn section(results: &Results) -> Vec<String> {
 }
 
 /// Name, panels and lines of the picture of each factor.
-pub fn pictures(results: &Results) -> Vec<(String, Vec<Column>, Vec<Line>)> {
+pub(super) fn pictures(results: &Results) -> Vec<(String, Vec<Column>, Vec<Line>)> {
     let study = Study::new(results);
     let picture =
         |(at, factor): (usize, &Factor)| (format!("figures/{}.svg", factor.name), columns(), study.lines(at));

@@ -9,7 +9,7 @@ use crate::report::markdown::{number, row, rule};
 const SHOWN: usize = 100;
 
 /// The best configurations, with their value of each scored claim.
-pub fn section(results: &Results, ranking: &Ranking) -> Vec<String> {
+pub(super) fn section(results: &Results, ranking: &Ranking) -> Vec<String> {
     let scored = scored(&results.design);
     let names = scored.iter().map(|(_, judged)| judged.id.as_str());
     let mut lines = vec![

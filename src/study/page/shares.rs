@@ -12,7 +12,7 @@ use crate::report::plot::specifications::{Curve, Point};
 const SHOWN: usize = 4;
 
 /// The answer, how the configurations were drawn, and the share of each claim.
-pub fn shares(evaluation: &Evaluation) -> Vec<String> {
+pub(super) fn shares(evaluation: &Evaluation) -> Vec<String> {
     let mut lines = vec![answer(evaluation) + "\n"];
     if let Some(draws) = evaluation.results.design.draws {
         lines.push(drawn(draws));
@@ -29,7 +29,7 @@ pub fn shares(evaluation: &Evaluation) -> Vec<String> {
 }
 
 /// The largest sources of variance of each claim.
-pub fn variance(evaluation: &Evaluation) -> Vec<String> {
+pub(super) fn variance(evaluation: &Evaluation) -> Vec<String> {
     let mut lines = vec!["\n## What decides?\n".to_owned()];
     lines.push(format!(
         "The {SHOWN} largest shares of each claim's variance (ω² of a linear model of all choices). A share of two \
@@ -57,7 +57,7 @@ pub fn variance(evaluation: &Evaluation) -> Vec<String> {
 }
 
 /// The pictures of all values of each claim.
-pub fn curves(results: &Results) -> Vec<String> {
+pub(super) fn curves(results: &Results) -> Vec<String> {
     let mut lines = vec![
         "\n## Specification curves\n".to_owned(),
         "All estimates by size, with their intervals (grey), the accepted range (green) and the published number (dashed). \

@@ -4,7 +4,7 @@ use super::super::measures::MeasureRow;
 
 /// Whether the published tree accuracy survives a value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Survival {
+pub(super) enum Survival {
     /// The rate is within the range that counts as reproduced.
     Yes,
     /// The rate is not, but its interval reaches it.
@@ -21,7 +21,7 @@ impl Survival {
     const ALL: [Self; 5] = [Self::Yes, Self::Perhaps, Self::Higher, Self::Lower, Self::Nothing];
 
     /// Given the row of its tree accuracy and the range that counts as reproduced.
-    pub fn of(row: Option<&MeasureRow>, (low, high): (f64, f64)) -> Self {
+    pub(super) fn of(row: Option<&MeasureRow>, (low, high): (f64, f64)) -> Self {
         let Some((rate, row)) = row.and_then(|row| Some((row.value?, row))) else { return Self::Nothing };
         let (least, most) = row.cells.low.zip(row.cells.high).unwrap_or((rate, rate));
         match () {
@@ -33,7 +33,7 @@ impl Survival {
     }
 
     /// As written on the page.
-    pub fn name(self) -> &'static str {
+    pub(super) fn name(self) -> &'static str {
         match self {
             Self::Yes => "yes",
             Self::Perhaps => "perhaps",
@@ -45,7 +45,7 @@ impl Survival {
 }
 
 /// How many of each kind.
-pub fn counts(survivals: &[Survival]) -> String {
+pub(super) fn counts(survivals: &[Survival]) -> String {
     let count = |kind: Survival| survivals.iter().filter(|found| **found == kind).count();
     let kinds = Survival::ALL.into_iter().map(|kind| (kind, count(kind))).filter(|(_, count)| *count > 0);
     kinds.map(|(kind, count)| format!("{count} × {}", kind.name())).collect::<Vec<_>>().join("; ")

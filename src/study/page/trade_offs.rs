@@ -10,7 +10,7 @@ use crate::report::markdown::{row, rule};
 const SETS: usize = 8;
 
 /// How often each claim holds, alone and with each other, and the largest sets of claims that hold together.
-pub fn section(results: &Results) -> Vec<String> {
+pub(super) fn section(results: &Results) -> Vec<String> {
     let held = Held::of(results);
     let names: Vec<&str> = results.design.claims.iter().map(|judged| judged.id.as_str()).collect();
     let has_value = |claim: usize| {

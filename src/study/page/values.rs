@@ -9,7 +9,7 @@ use crate::report::numbers;
 use crate::report::plot::effects::{Column, Line};
 
 /// The values, with the pictures.
-pub fn values(results: &Results) -> Vec<String> {
+pub(super) fn values(results: &Results) -> Vec<String> {
     let published = claims();
     let judged = &results.design.claims;
     let mut lines = vec![
@@ -45,7 +45,7 @@ pub fn values(results: &Results) -> Vec<String> {
 }
 
 /// The changes from the first configuration.
-pub fn changes(results: &Results) -> Vec<String> {
+pub(super) fn changes(results: &Results) -> Vec<String> {
     let mut lines = vec![format!("\n## Changes from “{}”\n", results.configurations[0].name)];
     lines.push(
         "Bold: the interval excludes 0. A claim over several conditions is compared at one of them: that which decides the first \
@@ -87,7 +87,7 @@ fn rows(
 }
 
 /// The name of each picture, and the claims that it shows.
-pub fn pictures(design: &Design) -> impl Iterator<Item = (String, &[JudgedClaim])> {
+pub(super) fn pictures(design: &Design) -> impl Iterator<Item = (String, &[JudgedClaim])> {
     /// Panels that the width of a picture has room for.
     const PANELS: usize = 4;
     let chunks = design.claims.chunks(PANELS).enumerate();
@@ -95,7 +95,7 @@ pub fn pictures(design: &Design) -> impl Iterator<Item = (String, &[JudgedClaim]
 }
 
 /// Panels and lines of the picture of some claims.
-pub fn picture(results: &Results, shown: &[JudgedClaim]) -> (Vec<Column>, Vec<Line>) {
+pub(super) fn picture(results: &Results, shown: &[JudgedClaim]) -> (Vec<Column>, Vec<Line>) {
     let published = claims();
     let column = |judged: &JudgedClaim| {
         let claim = judged.find(&published).expect("the design was checked");

@@ -12,7 +12,7 @@ use crate::files::import::xml::{Element, Wrong, line};
 const TURNS: [&str; 5] = ["quat", "axisangle", "euler", "xyaxes", "zaxis"];
 
 /// How elements of a file are meant.
-pub struct Defaults<'a> {
+pub(super) struct Defaults<'a> {
     /// Sections that hold for every element, the last first.
     top: Vec<Node<'a, 'a>>,
     /// Sections of a class, by its name.
@@ -26,7 +26,7 @@ pub struct Defaults<'a> {
 
 impl<'a> Defaults<'a> {
     /// Those of a file.
-    pub fn new(root: Node<'a, 'a>) -> Result<Self, Wrong> {
+    pub(super) fn new(root: Node<'a, 'a>) -> Result<Self, Wrong> {
         let mut compiler = root.children().filter(|node| node.has_tag_name("compiler")).collect::<Vec<_>>();
         compiler.reverse();
         let setting = |key: &str| compiler.iter().find_map(|node| node.attribute(key));
@@ -68,7 +68,7 @@ impl<'a> Defaults<'a> {
 
     /// An element over its defaults: those of its own class or else that of its surroundings, then of the classes around
     /// that one.
-    pub fn over(
+    pub(super) fn over(
         &self,
         label: String,
         node: Node<'a, 'a>,
@@ -90,7 +90,7 @@ impl<'a> Defaults<'a> {
     }
 
     /// From the frame of an element to the one around it.
-    pub fn pose(&self, element: &Element) -> Result<Isometry3<f64>, Wrong> {
+    pub(super) fn pose(&self, element: &Element) -> Result<Isometry3<f64>, Wrong> {
         let place = element.numbers("pos")?.unwrap_or_default();
         Ok(Isometry3::from_parts(Translation3::from(Vector3::from(place)), self.turn(element)?))
     }

@@ -4,23 +4,29 @@ use std::array::from_fn;
 use std::hint::black_box;
 
 /// Points of a block, and coordinates of a chunk.
-pub const BLOCK: usize = 8;
+pub(super) const BLOCK: usize = 8;
 /// What stands for a distance of 0 between two points of the map, in the unit of the distances.
 const COINCIDENT: f64 = 1e-5;
 /// Coordinates whose sums the registers hold.
-pub const COORDINATES: usize = 4;
+pub(super) const COORDINATES: usize = 4;
 
 /// A number for each point of a block, or for each coordinate of a chunk.
-pub type Lanes = [f64; BLOCK];
+pub(super) type Lanes = [f64; BLOCK];
 /// A number for each pair of two blocks, or of a block and a chunk: by rows, one for each point of the first.
-pub type Tile = [Lanes; BLOCK];
+pub(super) type Tile = [Lanes; BLOCK];
 
 /// D / d of all pairs of two blocks, and shares of the sum of their (D − d)².
 ///
 /// In: D; and of each block d rows of coordinates, one of 1, and one of squared norms. If one of the squares of d is no more than `close`, all are summed
 /// up from differences: twice the product of two points would leave too few digits of their squared norms.
 #[inline(always)]
-pub fn compare(tile: &Tile, dims: usize, close: f64, first: &[Lanes], second: &[Lanes]) -> (Tile, Lanes) {
+pub(super) fn compare(
+    tile: &Tile,
+    dims: usize,
+    close: f64,
+    first: &[Lanes],
+    second: &[Lanes],
+) -> (Tile, Lanes) {
     let mut squared = [[0.0; BLOCK]; BLOCK];
     for (x, y) in first[..dims].iter().zip(&second[..dims]) {
         // Copies, which the compiler knows not to overlap with anything.
@@ -97,7 +103,7 @@ fn inverse_roots(x: &Lanes) -> Lanes {
 
 /// Adds Σ_j ratios[i][j] x_j to the sums of each point i, for all coordinates.
 #[inline(always)]
-pub fn pull_first(sums: &mut [Tile], ratios: &Tile, points: &[Tile]) {
+pub(super) fn pull_first(sums: &mut [Tile], ratios: &Tile, points: &[Tile]) {
     for (sums, points) in sums.iter_mut().zip(points) {
         // The compiler would spread out each of the 64 ratios before the loop, and has registers for 32.
         let ratios = black_box(ratios);
@@ -114,7 +120,7 @@ pub fn pull_first(sums: &mut [Tile], ratios: &Tile, points: &[Tile]) {
 
 /// Adds Σ_i ratios[i][j] x_i to the sums of each point j, for all coordinates.
 #[inline(always)]
-pub fn pull_second(sums: &mut [Lanes], ratios: &Tile, points: &[Lanes]) {
+pub(super) fn pull_second(sums: &mut [Lanes], ratios: &Tile, points: &[Lanes]) {
     let sums = sums.as_chunks_mut::<COORDINATES>().0;
     for (sums, points) in sums.iter_mut().zip(points.as_chunks::<COORDINATES>().0) {
         // On a copy, which the compiler knows not to overlap with anything.

@@ -79,7 +79,7 @@ struct Proposal {
 const MOST_CLUSTERS: usize = 256;
 
 /// What all chains of a map share.
-pub struct Target<'a> {
+pub(crate) struct Target<'a> {
     /// x.
     pub points: &'a Points,
     /// The prior of the clusters' Gaussians.
@@ -93,7 +93,7 @@ pub struct Target<'a> {
 }
 
 /// The state of one chain.
-pub struct SplitMerge<'a> {
+pub(crate) struct SplitMerge<'a> {
     target: &'a Target<'a>,
     /// z: the cluster of each point.
     pub labels: Vec<usize>,
@@ -105,7 +105,11 @@ impl<'a> SplitMerge<'a> {
     ///
     /// # Errors
     /// [`Rounding`] if a covariance is not positive definite in floating point.
-    pub fn start(target: &'a Target<'a>, labels: &[usize], rng: &mut impl Rng) -> Result<Self, Rounding> {
+    pub(crate) fn start(
+        target: &'a Target<'a>,
+        labels: &[usize],
+        rng: &mut impl Rng,
+    ) -> Result<Self, Rounding> {
         let size = labels.iter().max().map_or(0, |largest| largest + 1);
         let mut members = vec![Vec::new(); size];
         labels.iter().enumerate().for_each(|(i, &label)| members[label].push(i));
@@ -123,7 +127,7 @@ impl<'a> SplitMerge<'a> {
     ///
     /// # Errors
     /// As for [`Self::start`].
-    pub fn sweep(&mut self, rng: &mut impl Rng) -> Result<(), Rounding> {
+    pub(crate) fn sweep(&mut self, rng: &mut impl Rng) -> Result<(), Rounding> {
         for proposed in MOVES {
             self.try_move(proposed, rng)?;
         }
@@ -252,7 +256,7 @@ impl<'a> SplitMerge<'a> {
     ///
     /// # Errors
     /// As for [`Self::start`].
-    pub fn draw_gaussians_alone(&mut self, rng: &mut impl Rng) -> Result<(), Rounding> {
+    pub(crate) fn draw_gaussians_alone(&mut self, rng: &mut impl Rng) -> Result<(), Rounding> {
         let data = self.points_and_joints(rng)?;
         self.draw_gaussians_given(&data, rng)
     }
@@ -308,7 +312,7 @@ impl<'a> SplitMerge<'a> {
     ///
     /// # Errors
     /// As for [`Self::start`].
-    pub fn graph(&self) -> Result<WeightedGraph, Rounding> {
+    pub(crate) fn graph(&self) -> Result<WeightedGraph, Rounding> {
         graph(&self.clusters.iter().map(|cluster| &cluster.moments).collect::<Vec<_>>())
     }
 
@@ -362,13 +366,13 @@ impl<'a> SplitMerge<'a> {
     ///
     /// # Errors
     /// As for [`Self::start`].
-    pub fn edges(&self, rng: &mut impl Rng) -> Result<Vec<Edge>, Rounding> {
+    pub(crate) fn edges(&self, rng: &mut impl Rng) -> Result<Vec<Edge>, Rounding> {
         let tree = self.draw_tree(rng)?;
         Ok(tree.into_iter().map(|(child, parent)| Edge { child, parent }).collect())
     }
 
     /// log p(x, z) of the Dirichlet-process mixture, with π and all (μ, Σ) integrated out and the joints left out.
-    pub fn log_posterior(&self) -> f64 {
+    pub(crate) fn log_posterior(&self) -> f64 {
         let concentration = self.target.concentration;
         let own = |cluster: &Cluster| cluster.log_mass(concentration);
         libm::lgamma(concentration) - libm::lgamma(concentration + self.labels.len() as f64)

@@ -11,7 +11,7 @@ use crate::stages::schema::weighted_trees::WeightedGraph;
 
 /// A cluster of the partition.
 #[derive(Debug, Clone)]
-pub struct Cluster {
+pub(super) struct Cluster {
     /// Its points, rising.
     pub members: Vec<usize>,
     /// Their sufficient statistics.
@@ -29,7 +29,7 @@ impl Cluster {
     ///
     /// # Errors
     /// [`Rounding`].
-    pub fn draw(
+    pub(super) fn draw(
         points: &Points,
         prior: &NormalInverseWishart,
         members: Vec<usize>,
@@ -42,23 +42,23 @@ impl Cluster {
     }
 
     /// (μ, Σ).
-    pub fn gaussian(&self) -> &Gaussian {
+    pub(super) fn gaussian(&self) -> &Gaussian {
         &self.gaussian
     }
 
     /// Takes another (μ, Σ).
-    pub fn take(&mut self, gaussian: Gaussian) {
+    pub(super) fn take(&mut self, gaussian: Gaussian) {
         self.moments = gaussian.moments();
         self.gaussian = gaussian;
     }
 
     /// Number of its points.
-    pub fn count(&self) -> f64 {
+    pub(super) fn count(&self) -> f64 {
         self.members.len() as f64
     }
 
     /// log (γ Γ(n) m(X)): its factor in p(x, z), the joints apart.
-    pub fn log_mass(&self, concentration: f64) -> f64 {
+    pub(super) fn log_mass(&self, concentration: f64) -> f64 {
         concentration.ln() + libm::lgamma(self.count()) + self.log_marginal
     }
 }
@@ -76,7 +76,7 @@ pub fn graph(moments: &[&Augmented]) -> Result<WeightedGraph, Rounding> {
 ///
 /// # Errors
 /// [`Rounding`].
-pub fn log_joints(model: Model, clusters: &[&Cluster]) -> Result<f64, Rounding> {
+pub(super) fn log_joints(model: Model, clusters: &[&Cluster]) -> Result<f64, Rounding> {
     if model == Model::Dpgmm || clusters.len() < 2 {
         return Ok(0.0);
     }

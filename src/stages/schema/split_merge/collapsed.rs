@@ -16,7 +16,7 @@ const MOST: f64 = 210.0;
 ///
 /// # Errors
 /// [`Rounding`].
-pub fn collapsed_labels(
+pub(super) fn collapsed_labels(
     points: &Points,
     prior: &NormalInverseWishart,
     data: &mut [SufficientStatistics],

@@ -21,7 +21,7 @@ const ROUNDS: usize = 10;
 
 /// How a split is proposed.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum SplitProposal {
+pub(super) enum SplitProposal {
     /// By the odds of each point, tempered to this power.
     Tempered(f64),
     /// By random shares, whatever the points ("dumb" splits).
@@ -30,7 +30,7 @@ pub enum SplitProposal {
 
 /// How to divide some points among their ends, a side for each.
 #[derive(Debug)]
-pub struct Division {
+pub(super) struct Division {
     /// The points, rising, without the ends.
     others: Vec<usize>,
     /// The points that have the sides.
@@ -44,7 +44,7 @@ impl Division {
     ///
     /// # Errors
     /// [`Rounding`].
-    pub fn new(
+    pub(super) fn new(
         points: &Points,
         prior: &NormalInverseWishart,
         members: &[usize],
@@ -114,7 +114,7 @@ impl Division {
     }
 
     /// Draws a division: the points of each side, rising, and the logarithm of its probability.
-    pub fn draw(&self, rng: &mut impl Rng) -> (Vec<Vec<usize>>, f64) {
+    pub(super) fn draw(&self, rng: &mut impl Rng) -> (Vec<Vec<usize>>, f64) {
         let size = self.ends.len();
         let sides: Vec<usize> = if let Some(log_shares) = &self.log_shares {
             log_shares.chunks_exact(size).map(|logs| side(logs.iter().map(|log| log.exp()), rng)).collect()
@@ -128,7 +128,7 @@ impl Division {
 
     /// Logarithm of the probability that [`Self::draw`] gives the division in which `side_of` says to which side each point
     /// falls.
-    pub fn log_probability(&self, side_of: impl Fn(usize) -> usize) -> f64 {
+    pub(super) fn log_probability(&self, side_of: impl Fn(usize) -> usize) -> f64 {
         self.log_probability_of(self.others.iter().map(|&i| side_of(i)))
     }
 

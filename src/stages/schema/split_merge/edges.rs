@@ -26,7 +26,11 @@ pub struct TreePosterior {
 ///
 /// # Errors
 /// [`Rounding`].
-pub fn tree_given(target: &Target, labels: &[usize], rng: &mut Stream) -> Result<TreePosterior, Rounding> {
+pub(crate) fn tree_given(
+    target: &Target,
+    labels: &[usize],
+    rng: &mut Stream,
+) -> Result<TreePosterior, Rounding> {
     let mut chain = SplitMerge::start(target, labels, rng)?;
     let mut graphs = Vec::with_capacity(DRAWS);
     let mut trees: BTreeMap<Vec<(usize, usize)>, f64> = BTreeMap::new();

@@ -8,7 +8,8 @@ mod division;
 mod edges;
 mod neighbours;
 
-pub use self::chain::{SplitMerge, Target};
+pub(crate) use self::chain::{SplitMerge, Target};
 pub use self::clusters::graph;
-pub use self::edges::{TreePosterior, tree_given};
-pub use self::neighbours::Neighbours;
+pub use self::edges::TreePosterior;
+pub(crate) use self::edges::tree_given;
+pub(crate) use self::neighbours::Neighbours;

@@ -12,13 +12,13 @@ use crate::stages::mixture::Points;
 const NEAR: usize = 60;
 
 /// The nearest points of each point.
-pub struct Neighbours {
+pub(crate) struct Neighbours {
     near: Vec<Vec<u32>>,
 }
 
 impl Neighbours {
     /// Of some points.
-    pub fn of(points: &Points) -> Self {
+    pub(crate) fn of(points: &Points) -> Self {
         let near = |i: usize| {
             let mut others: Vec<(f64, u32)> = (0..points.count)
                 .filter(|&j| j != i)
@@ -39,7 +39,7 @@ impl Neighbours {
     }
 
     /// Draws another point than `first`; `None` if there is none.
-    pub fn second(&self, first: usize, rng: &mut impl Rng) -> Option<usize> {
+    pub(crate) fn second(&self, first: usize, rng: &mut impl Rng) -> Option<usize> {
         let near = self.near[first].choose(rng)?;
         if rng.random::<bool>() {
             return Some(*near as usize);

@@ -8,7 +8,7 @@ use crate::stages::agent::{Freedom, Vector3};
 /// The angles of a joint, rad in [−π, π]: the parent relative to the child, 0 in the rest pose. `turned` is the rotation of the
 /// child relative to the parent. Angles that the joint does not have are 0; of a ball joint, they are the vector of that
 /// rotation. What a hinge or universal joint cannot do is left out.
-pub fn angles(freedom: &Freedom, turned: UnitQuaternion<f64>) -> Vector3 {
+pub(super) fn angles(freedom: &Freedom, turned: UnitQuaternion<f64>) -> Vector3 {
     match *freedom {
         Freedom::Fixed => [0.0; 3],
         Freedom::Ball => (-vector_of(turned)).into(),

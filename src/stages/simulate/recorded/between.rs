@@ -16,7 +16,7 @@ use super::skeleton::RecordedMovement;
 const SAME_TIME: f64 = 1e-9;
 
 /// Where `joint` is on what carries it at a time in frames. No frame outside of `frames` counts.
-pub fn local_at(
+pub(super) fn local_at(
     movement: &RecordedMovement,
     frames: &Range<usize>,
     joint: usize,

@@ -18,12 +18,12 @@ use crate::stages::agent::{Agent, Joint, Part, Vector3};
 const STILL: (f64, f64) = (1e-4, 1e-5);
 
 /// Where all joints are at a frame, in the unit of the recording.
-pub fn frame_poses(movement: &RecordedMovement, frame: usize) -> Vec<Isometry3<f64>> {
+pub(super) fn frame_poses(movement: &RecordedMovement, frame: usize) -> Vec<Isometry3<f64>> {
     movement.placed(|joint| movement.local(joint, frame))
 }
 
 /// Where the centre of a part is in the world, m, of where its joint is.
-pub fn centre(agent: &Agent, attached: &Attached, part: usize, joint: &Isometry3<f64>) -> Column<f64> {
+pub(super) fn centre(agent: &Agent, attached: &Attached, part: usize, joint: &Isometry3<f64>) -> Column<f64> {
     let arm = Column::from(agent.parts[part].centre) - attached.rest[part];
     attached.scale * joint.translation.vector + joint.rotation * arm
 }

@@ -6,14 +6,14 @@ use nalgebra::{Quaternion, UnitQuaternion, Vector3 as Column};
 const SMALL: f64 = 1e-12;
 
 /// The rotation about the axis x, y or z (0 to 2) by an angle in degrees.
-pub fn about(axis: usize, degrees: f64) -> UnitQuaternion<f64> {
+pub(super) fn about(axis: usize, degrees: f64) -> UnitQuaternion<f64> {
     let mut vector = Column::zeros();
     vector[axis] = degrees.to_radians();
     rotation_of(vector)
 }
 
 /// The rotation of a vector, rad.
-pub fn rotation_of(vector: Column<f64>) -> UnitQuaternion<f64> {
+pub(super) fn rotation_of(vector: Column<f64>) -> UnitQuaternion<f64> {
     let angle = vector.norm();
     let (sine, cosine) = libm::sincos(angle / 2.0);
     let factor = if angle < SMALL { 0.5 } else { sine / angle };
@@ -21,7 +21,7 @@ pub fn rotation_of(vector: Column<f64>) -> UnitQuaternion<f64> {
 }
 
 /// The vector of a rotation, rad: the shorter way round.
-pub fn vector_of(rotation: UnitQuaternion<f64>) -> Column<f64> {
+pub(super) fn vector_of(rotation: UnitQuaternion<f64>) -> Column<f64> {
     let way = if rotation.w < 0.0 { -1.0 } else { 1.0 };
     let (sine, cosine) = (rotation.imag().norm(), way * rotation.w);
     let factor = if sine < SMALL { 2.0 } else { 2.0 * libm::atan2(sine, cosine) / sine };
@@ -29,7 +29,7 @@ pub fn vector_of(rotation: UnitQuaternion<f64>) -> Column<f64> {
 }
 
 /// How far apart two rotations are, rad.
-pub fn angle_between(a: &UnitQuaternion<f64>, b: &UnitQuaternion<f64>) -> f64 {
+pub(super) fn angle_between(a: &UnitQuaternion<f64>, b: &UnitQuaternion<f64>) -> f64 {
     vector_of(a.inverse() * b).norm()
 }
 

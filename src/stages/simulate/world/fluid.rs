@@ -17,17 +17,17 @@ type Lanes = [f64; LANES];
 
 /// The surface of a part, as what a push takes of it.
 #[derive(Debug, Clone)]
-pub struct Surface {
+pub(super) struct Surface {
     rings: Vec<Rings>,
     places: Vec<Places>,
 }
 
 /// Force, N, and torque about the centre of the part, N m, in the world's frame.
-pub type Push = (Vector3, Vector3);
+pub(super) type Push = (Vector3, Vector3);
 
 /// What of a push acts over a step, s: all of it over a short one, and never so much that the part gains energy. It makes the step
 /// of a glide exact, v / (1 + c v h): an explicit push would turn a fast part round.
-pub fn over_step((force, torque): Push, part: &Moving, step: f64) -> Push {
+pub(super) fn over_step((force, torque): Push, part: &Moving, step: f64) -> Push {
     let dot = |a: Vector3, b: Vector3| (0..3).map(|i| a[i] * b[i]).sum::<f64>();
     let power = -dot(force, part.linear) - dot(torque, part.angular);
     // Twice the kinetic energy that the push would give the part if it rested, over the square of the step.
@@ -56,7 +56,7 @@ struct Places {
 
 impl Surface {
     /// That of a part in a fluid of this density, kg/m³.
-    pub fn new(shape: &Shape, density: f64) -> Self {
+    pub(super) fn new(shape: &Shape, density: f64) -> Self {
         let gathered = |spots: &[(Spot, f64)]| {
             let mut places = Places::default();
             for (lane, (spot, area)) in spots.iter().enumerate() {
@@ -84,7 +84,7 @@ impl Surface {
     /// The push on the part, where it moves with these velocities of the world's frame, m/s and rad/s.
     ///
     /// The outward speed of a place is linear in both: n · (v + ω × r) = n · v + (r × n) · ω.
-    pub fn push(&self, pose: &Pose, linear: Vector3, angular: Vector3) -> Push {
+    pub(super) fn push(&self, pose: &Pose, linear: Vector3, angular: Vector3) -> Push {
         let own = |x: Vector3| {
             [0, 1, 2].map(|column| (0..3).map(|row| pose.rotation[row][column] * x[row]).sum::<f64>())
         };

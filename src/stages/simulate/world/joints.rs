@@ -8,7 +8,7 @@ use ode_sys as ode;
 use crate::stages::agent::{Freedom, Joint, Vector3};
 
 /// A joint in the engine.
-pub struct EngineJoint {
+pub(super) struct EngineJoint {
     id: ode::dJointID,
     kind: Kind,
 }
@@ -87,7 +87,7 @@ impl EngineJoint {
     /// # Safety
     /// The world and its bodies must be live, and there must be one for each part of the joint. The joint must not be used
     /// after its world is destroyed.
-    pub unsafe fn new(world: ode::dWorldID, bodies: &[ode::dBodyID], joint: &Joint) -> Self {
+    pub(super) unsafe fn new(world: ode::dWorldID, bodies: &[ode::dBodyID], joint: &Joint) -> Self {
         let [x, y, z] = joint.anchor;
         let own = [bodies[joint.parent], bodies[joint.child]];
         // SAFETY: as the caller promises. Attach first: ODE ignores the anchor and axes of a joint without bodies. The third
@@ -130,14 +130,14 @@ impl EngineJoint {
 
     /// Takes the joint from its bodies, which no longer feel it.
     #[cfg(test)]
-    pub fn detach(&self) {
+    pub(super) fn detach(&self) {
         // SAFETY: the joint is live, as its maker promised.
         unsafe { ode::dJointAttach(self.id, null_mut(), null_mut()) }
     }
 
     /// Its angles, rad: the parent relative to the child, 0 in the rest pose; of a ball joint, the vector of that rotation.
     /// Those that the joint does not have are 0.
-    pub fn angles(&self) -> Vector3 {
+    pub(super) fn angles(&self) -> Vector3 {
         let [mut first, mut second] = [0.0; 2];
         // SAFETY: the joint is live, as its maker promised, and of its kind; both angles are written where they may be.
         unsafe {
@@ -152,7 +152,7 @@ impl EngineJoint {
     }
 
     /// Rates about its axes, rad/s; of a ball joint, about those of the parent's frame.
-    pub fn rates(&self) -> Vector3 {
+    pub(super) fn rates(&self) -> Vector3 {
         // SAFETY: the joint is live, as its maker promised, and of its kind.
         unsafe {
             match &self.kind {
@@ -169,7 +169,7 @@ impl EngineJoint {
     }
 
     /// Applies torques about its axes for the next step, N·m.
-    pub fn apply_torques(&self, torques: Vector3) {
+    pub(super) fn apply_torques(&self, torques: Vector3) {
         let [first, second, third] = torques;
         // SAFETY: the joint is live, as its maker promised, and of its kind; ODE copes with any finite torque, and what a
         // large one does is seen after the step.
@@ -184,7 +184,7 @@ impl EngineJoint {
     }
 
     /// Sets the motor of each axis: the velocity that it strives for, rad/s, and its largest torque, N·m.
-    pub fn set_motor(&self, velocities: Vector3, torque: f64) {
+    pub(super) fn set_motor(&self, velocities: Vector3, torque: f64) {
         let parameters = [
             (ode::dParamVel1, ode::dParamFMax1),
             (ode::dParamVel2, ode::dParamFMax2),
@@ -206,7 +206,7 @@ impl EngineJoint {
     }
 
     /// Distance between the two places that its parts have its anchor at, m. Parts that are fixed have none.
-    pub fn separation(&self) -> f64 {
+    pub(super) fn separation(&self) -> f64 {
         type Anchor = unsafe extern "C" fn(ode::dJointID, *mut f64);
         let (first_anchor, second_anchor): (Anchor, Anchor) = match self.kind {
             Kind::Universal => (ode::dJointGetUniversalAnchor, ode::dJointGetUniversalAnchor2),
@@ -225,7 +225,7 @@ impl EngineJoint {
 }
 
 /// What is left to turn from `angles` to `target` about the axes of a ball joint, rad: the shorter way round.
-pub fn ball_error(target: Vector3, angles: Vector3) -> Vector3 {
+pub(crate) fn ball_error(target: Vector3, angles: Vector3) -> Vector3 {
     let turn = |angles: Vector3| Rotation3::from_scaled_axis(Column::from(angles));
     vector_of(turn(angles).inverse() * turn(target))
 }

@@ -12,7 +12,7 @@ use crate::stages::agent::Vector3;
 
 /// How hard a part is to move.
 #[derive(Debug, Clone, Copy)]
-pub struct Inertia {
+pub(super) struct Inertia {
     /// kg.
     pub mass: f64,
     /// About the centre of mass in the part's frame, kg m².
@@ -22,7 +22,7 @@ pub struct Inertia {
 
 impl Inertia {
     /// Of a mass, kg, and a tensor about its centre, kg m², by rows.
-    pub fn new(mass: f64, tensor: [Vector3; 3]) -> Self {
+    pub(super) fn new(mass: f64, tensor: [Vector3; 3]) -> Self {
         let tensor = matrix(&tensor);
         Self { mass, tensor, inverse: tensor.try_inverse().expect("a part has a volume") }
     }
@@ -30,7 +30,7 @@ impl Inertia {
 
 /// A part that moves.
 #[derive(Debug, Clone, Copy)]
-pub struct Moving {
+pub(super) struct Moving {
     pub inertia: Inertia,
     pub pose: Pose,
     /// m/s, in the world's frame.
@@ -41,14 +41,14 @@ pub struct Moving {
 
 impl Moving {
     /// The angular acceleration, rad/s², by a torque, N m, both in the world's frame.
-    pub fn turned_by(&self, torque: Vector3) -> Vector3 {
+    pub(super) fn turned_by(&self, torque: Vector3) -> Vector3 {
         let turned = matrix(&self.pose.rotation);
         (turned * (self.inertia.inverse * (turned.transpose() * Column::from(torque)))).into()
     }
 }
 
 /// The centre of mass of a body.
-pub fn centre_of_mass(parts: &[Moving]) -> Vector3 {
+pub(super) fn centre_of_mass(parts: &[Moving]) -> Vector3 {
     let mass: f64 = parts.iter().map(|part| part.inertia.mass).sum();
     let moment: Column<f64> =
         parts.iter().map(|part| part.inertia.mass * Column::from(part.pose.position)).sum();
@@ -57,7 +57,7 @@ pub fn centre_of_mass(parts: &[Moving]) -> Vector3 {
 
 /// Linear and angular velocities of all parts with a rotation of the whole body about its centre of mass added that makes its
 /// angular momentum, kg m²/s, the one that is wanted. The rates of joints stay as they are.
-pub fn with_angular_momentum(wanted: Vector3, parts: &[Moving]) -> Vec<(Vector3, Vector3)> {
+pub(super) fn with_angular_momentum(wanted: Vector3, parts: &[Moving]) -> Vec<(Vector3, Vector3)> {
     let centre = Column::from(centre_of_mass(parts));
     let mut momentum = -Column::from(wanted);
     let mut inertia = Matrix3::zeros();

@@ -13,7 +13,7 @@ const ROUND: usize = 6;
 const ACROSS: usize = 8;
 
 /// Places that stand for the surface, but for the [side] of a cylinder, with their areas, m².
-pub fn places(shape: &Shape) -> Vec<(Spot, f64)> {
+pub(super) fn places(shape: &Shape) -> Vec<(Spot, f64)> {
     match *shape {
         Shape::Cylinder { radius, length } => around(&ends(radius, length)),
         Shape::Capsule { radius, length } => around(&ball(radius, length)),
@@ -23,7 +23,7 @@ pub fn places(shape: &Shape) -> Vec<(Spot, f64)> {
 }
 
 /// Rings that stand for the side of a cylinder: the height of each along the axis, m, and its radius times its width, m².
-pub fn side(shape: &Shape) -> Vec<(f64, f64)> {
+pub(super) fn side(shape: &Shape) -> Vec<(f64, f64)> {
     match *shape {
         Shape::Cylinder { radius, length } | Shape::Capsule { radius, length } => {
             let height = |at: usize| ((at as f64 + 0.5) / ALONG as f64 - 0.5) * length;
