@@ -15,7 +15,6 @@ use super::results::Results;
 use crate::files::FileError;
 use crate::report::markdown::{row, rule};
 use crate::report::plot::{self, PlotError};
-use crate::tasks::seeds::used_before;
 
 /// The page.
 pub(super) fn text(results: &Results, evaluation: Option<&Evaluation>, ranking: Option<&Ranking>) -> String {
@@ -66,9 +65,8 @@ fn provenance(results: &Results) -> String {
         true => String::new(),
         false => format!("; all have `{}` instead", settings.join(", ")),
     };
-    let used = used_before(design.seeds()).map_or(String::new(), |used| format!(" {used}"));
     format!(
-        "**Configurations:** {}, over `reproduce/paper.toml` of revision {}{settings}. Seed {}.{used} Made by `bodyschema study`; \
+        "**Configurations:** {}, over `reproduce/paper.toml` of revision {}{settings}. Seed {}. Made by `bodyschema study`; \
          [configurations.csv](configurations.csv) says what each is, and [study.csv](study.csv) has each claim's value, n, interval and \
          verdict.\n",
         results.configurations.len(),
