@@ -8,7 +8,7 @@ mod support;
 use support::folder::{Folder, rows};
 use support::repository::{read, repository};
 use support::said::Said;
-use support::tools::run;
+use support::tools::{python, run};
 
 fn citation() -> String {
     read("CITATION.cff")
@@ -102,4 +102,11 @@ fn the_abstract_says_whether_experiment_2_of_the_confirmation_is_finished() {
         if finished { "" } else { " not" }
     );
     assert!(!says_what_ran(&text, !finished), "an abstract of the other case");
+}
+
+#[test]
+fn the_registered_values_are_still_those_that_were_frozen() {
+    let Some(mut check) = python(&repository("reproduce/confirm.py")) else { return };
+    let said = Said::by(check.arg("--check"));
+    assert_eq!((said.status, &*said.err), (Some(0), ""), "{said:?}");
 }

@@ -1,7 +1,6 @@
 //! The rules of the house, read from the names in the files of `src`: rooms import only rooms below them, files never import
-//! each other in a circle or the `mod.rs` of their folder, and the core knows no files, terminal or plots.
-//!
-//! There is no list of exceptions. Each rule is shown to find a file that breaks it.
+//! each other in a circle or the `mod.rs` of their folder, and the core knows no files, terminal or plots. Without exceptions.
+//! Each rule is shown to find a file that breaks it.
 
 use petgraph::{algo::tarjan_scc, graphmap::DiGraphMap};
 use syn::{Item, ItemMod};

@@ -1,46 +1,30 @@
 //! Recorded movements as a user meets them: a body of a skeleton, its movement felt, seen and estimated, and mistakes.
 
-use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
-
 use bodyschema::files::body::read_body;
 use bodyschema::files::npy::read_tactile;
 use bodyschema::files::tables::read_truth;
 
-fn data(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/movement").join(name)
-}
+mod support;
 
+use support::folder::Folder;
+use support::repository::read;
+
+/// A recording of our own: 2 s of hips, trunk, an arm of one piece with a watch and a finger, and legs of which one is rigid.
 fn text() -> String {
-    fs::read_to_string(data("arms.bvh")).unwrap()
+    read("tests/data/movement/arms.bvh")
 }
 
-/// Runs the program in a folder, with the recording there as `walk.bvh`.
-fn run(folder: &Path, arguments: &str) -> Output {
-    let file = folder.join("walk.bvh");
-    if !file.exists() {
-        fs::copy(data("arms.bvh"), file).unwrap();
-    }
-    Command::new(env!("CARGO_BIN_EXE_bodyschema"))
-        .current_dir(folder)
-        .args(arguments.split(' '))
-        .output()
-        .expect("the program starts")
-}
-
-/// What the program prints.
-#[track_caller]
-fn succeed(folder: &Path, arguments: &str) -> String {
-    let output = run(folder, arguments);
-    assert!(output.status.success() && output.stderr.is_empty(), "{arguments}: {output:?}");
-    String::from_utf8(output.stdout).unwrap()
+/// A folder with the recording, `walk.bvh`.
+fn folder() -> Folder {
+    let folder = Folder::new();
+    folder.write("walk.bvh", text());
+    folder
 }
 
 #[test]
 fn a_skeleton_becomes_a_body() {
-    let folder = tempfile::tempdir().unwrap();
-    let told = succeed(folder.path(), "body import walk.bvh --sensors-per-part 20 --out body.toml");
+    let folder = folder();
+    let told = folder.succeed("body import walk.bvh --sensors-per-part 20 --out body.toml");
     assert!(
         told.starts_with("13 parts, in body.toml\njoints: 0 universal, 1 hinge, 6 ball, 5 fixed\n"),
         "{told}"
@@ -54,29 +38,28 @@ fn a_skeleton_becomes_a_body() {
         told.contains("bones shorter than 0.05 m carry no skin, unless --min-length says so (1 of 13)\n"),
         "{told}"
     );
-    let body = read_body(&folder.path().join("body.toml")).unwrap();
+    let body = read_body(&folder.at("body.toml")).unwrap();
     let names = body.rigid_names();
     assert_eq!(names[..3], ["Hips + Hips/2 + Hips/3", "Spine + Spine/2", "Arm"]);
     assert_eq!((body.agent.sites.len(), body.agent.truth().parts()), (12 * 20, 7));
     // Of a unit that is given.
-    succeed(folder.path(), "body import walk.bvh --scale 0.1 --min-length 2 --per-area 1 --out large.toml");
-    let large = read_body(&folder.path().join("large.toml")).unwrap();
+    folder.succeed("body import walk.bvh --scale 0.1 --min-length 2 --per-area 1 --out large.toml");
+    let large = read_body(&folder.at("large.toml")).unwrap();
     assert!((large.agent.joints[2].anchor[1] - 2.0).abs() < 1e-9);
     // A skeleton's body can be simulated, too.
-    fs::write(folder.path().join("short.toml"), "[physics]\nduration = 2.0\n").unwrap();
-    succeed(folder.path(), "simulate --body body.toml --settings short.toml --out random");
+    folder.write("short.toml", "[physics]\nduration = 2.0\n");
+    folder.succeed("simulate --body body.toml --settings short.toml --out random");
 }
 
 #[test]
 fn a_movement_is_felt_seen_and_estimated() {
-    let folder = tempfile::tempdir().unwrap();
-    let at = |name: &str| folder.path().join(name);
-    succeed(folder.path(), "body import walk.bvh --out body.toml");
-    let told = succeed(folder.path(), "simulate --body body.toml --movement walk.bvh --out moved");
+    let folder = folder();
+    folder.succeed("body import walk.bvh --out body.toml");
+    let told = folder.succeed("simulate --body body.toml --movement walk.bvh --out moved");
     assert!(told.starts_with("100 samples of 480 sensors on 6 parts, 0.02 s apart, in moved\n"), "{told}");
     assert!(told.contains("(1): Rigid on Hips\n"), "{told}");
     // Without a body file, the same body makes the same movement.
-    let alone = succeed(folder.path(), "simulate --movement walk.bvh --out alone");
+    let alone = folder.succeed("simulate --movement walk.bvh --out alone");
     assert!(alone.contains("so centimetres were assumed"), "{alone}");
     for name in [
         "tactile.npy",
@@ -88,60 +71,54 @@ fn a_movement_is_felt_seen_and_estimated() {
         "solids.csv",
         "sensors.csv",
     ] {
-        assert_eq!(
-            fs::read(at("moved").join(name)).unwrap(),
-            fs::read(at("alone").join(name)).unwrap(),
-            "{name}"
-        );
+        assert_eq!(folder.bytes(format!("moved/{name}")), folder.bytes(format!("alone/{name}")), "{name}");
     }
-    let tactile = read_tactile(&at("moved/tactile.npy")).unwrap();
+    let tactile = read_tactile(&folder.at("moved/tactile.npy")).unwrap();
     assert_eq!((tactile.samples, tactile.sensors()), (100, 480));
-    assert!(tactile.series().all(|series| series.iter().any(|pressure| *pressure > 0.0)));
+    // Those on the back of what only goes forward feel nothing.
+    let felt = tactile.series().filter(|series| series.iter().any(|pressure| *pressure > 0.0)).count();
+    assert!(felt > 400, "{felt}");
     // The truth leaves out the finger, which has no skin.
-    let truth = read_truth(&at("moved/labels.csv"), &at("moved/tree.csv"), 480).unwrap();
+    let truth = read_truth(&folder.at("moved/labels.csv"), &folder.at("moved/tree.csv"), 480).unwrap();
     assert_eq!((truth.parts(), truth.tree.len()), (6, 5));
-    let names = fs::read_to_string(at("moved/names.csv")).unwrap();
+    let names = folder.text("moved/names.csv");
     assert!(
         names.starts_with(
             "part,name\n0,Hips + Hips/2 + Hips/3 + Rigid\n1,Spine + Spine/2\n2,Arm\n3,Forearm + "
         ),
         "{names}"
     );
-    let angles = fs::read_to_string(at("moved/joint-angles.csv")).unwrap();
+    let angles = folder.text("moved/joint-angles.csv");
     assert_eq!(angles.lines().count(), 102);
     assert!(angles.lines().nth(2).unwrap().starts_with("0.020000,"), "{angles}");
 
     let truth = "--labels moved/labels.csv --tree moved/tree.csv";
-    let estimated =
-        run(folder.path(), &format!("estimate moved/tactile.npy {truth} --interval 0.02 --out found"));
-    let told = String::from_utf8(estimated.stdout).unwrap();
-    assert!(told.contains("against the truth: adjusted Rand index "), "{told}");
-    let told = succeed(folder.path(), "view moved --estimate found");
+    let estimated = folder.run(&format!("estimate moved/tactile.npy {truth} --interval 0.02 --out found"));
+    assert!(estimated.out.contains("against the truth: adjusted Rand index "), "{estimated:?}");
+    let told = folder.succeed("view moved --estimate found");
     assert!(told.starts_with("480 sensors in "), "{told}");
 }
 
 #[test]
 fn times_are_those_of_the_recording_unless_the_user_says_others() {
-    let folder = tempfile::tempdir().unwrap();
-    let at = |name: &str| folder.path().join(name);
-    fs::write(at("tenths.toml"), "[sense]\ninterval = 0.1\n").unwrap();
-    fs::write(at("thin.toml"), "[sense]\nfluid_density = 505.0\n").unwrap();
-    let told = succeed(folder.path(), "simulate --movement walk.bvh --settings tenths.toml --out tenths");
+    let folder = folder();
+    folder.write("tenths.toml", "[sense]\ninterval = 0.1\n");
+    folder.write("thin.toml", "[sense]\nfluid_density = 505.0\n");
+    let told = folder.succeed("simulate --movement walk.bvh --settings tenths.toml --out tenths");
     assert!(told.starts_with("20 samples of 480 sensors on 6 parts, 0.1 s apart"), "{told}");
-    let told =
-        succeed(folder.path(), "simulate --movement walk.bvh --settings thin.toml --duration 0.5 --out half");
+    let told = folder.succeed("simulate --movement walk.bvh --settings thin.toml --duration 0.5 --out half");
     assert!(told.starts_with("25 samples of") && told.contains("0.02 s apart"), "{told}");
     assert!(told.contains("note: 0.5 s of 2 s are played (--duration)\n"), "{told}");
     // Half of the density is half of the pressure of the first samples.
-    succeed(folder.path(), "simulate --movement walk.bvh --out all");
-    let [half, all] = ["half", "all"].map(|name| read_tactile(&at(name).join("tactile.npy")).unwrap());
+    folder.succeed("simulate --movement walk.bvh --out all");
+    let [half, all] = ["half", "all"].map(|name| read_tactile(&folder.at(name).join("tactile.npy")).unwrap());
     for (half, all) in half.series().zip(all.series()) {
         assert!(half.iter().zip(all).all(|(half, all)| (2.0 * half - all).abs() <= 1e-5 * all.abs()));
     }
     // Twice as many samples: two halves of a frame are felt nearly at its speed.
-    fs::write(at("often.toml"), "[sense]\ninterval = 0.01\n").unwrap();
-    succeed(folder.path(), "simulate --movement walk.bvh --settings often.toml --out often");
-    let often = read_tactile(&at("often").join("tactile.npy")).unwrap();
+    folder.write("often.toml", "[sense]\ninterval = 0.01\n");
+    folder.succeed("simulate --movement walk.bvh --settings often.toml --out often");
+    let often = read_tactile(&folder.at("often").join("tactile.npy")).unwrap();
     assert_eq!(often.samples, 200);
     let (mut error, mut speed) = (0.0, 0.0);
     for (often, all) in often.series().zip(all.series()) {
@@ -156,7 +133,7 @@ fn times_are_those_of_the_recording_unless_the_user_says_others() {
 
 #[test]
 fn jumps_are_cut_off_and_said() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = folder();
     // A rest pose before the movement, and one frame at another place late in it.
     let text = text();
     let (head, frames) = text.split_once("Frame Time: 0.02\n").unwrap();
@@ -164,26 +141,24 @@ fn jumps_are_cut_off_and_said() {
     frames.insert(0, ["0"; 25].join(" "));
     frames[90] = frames[90].split_once(' ').map(|(_, rest)| format!("900 {rest}")).unwrap();
     let head = head.replace("Frames: 101", "Frames: 102");
-    fs::write(folder.path().join("walk.bvh"), format!("{head}Frame Time: 0.02\n{}\n", frames.join("\n")))
-        .unwrap();
-    let told = succeed(folder.path(), "simulate --movement walk.bvh --out cut");
+    folder.write("walk.bvh", format!("{head}Frame Time: 0.02\n{}\n", frames.join("\n")));
+    let told = folder.succeed("simulate --movement walk.bvh --out cut");
     assert!(told.starts_with("88 samples of"), "{told}");
     assert!(
         told.contains("frames 2 to 90 of 102 are played, the longest stretch without a jump: there are 3 "),
         "{told}"
     );
-    let told = succeed(folder.path(), "simulate --movement walk.bvh --keep-jumps --out all");
+    let told = folder.succeed("simulate --movement walk.bvh --keep-jumps --out all");
     assert!(told.starts_with("101 samples of") && !told.contains("jump"), "{told}");
 }
 
 #[test]
 fn a_mistake_is_one_line_and_leaves_nothing() {
-    let folder = tempfile::tempdir().unwrap();
-    let at = |name: &str| folder.path().join(name);
+    let folder = folder();
     let text = text();
     let write = |name: &str, from: &str, to: &str| {
         assert!(text.contains(from), "{from}");
-        fs::write(at(name), text.replace(from, to)).unwrap();
+        folder.write(name, text.replace(from, to));
     };
     write("two.bvh", "MOTION", "ROOT Other\n{\nOFFSET 0 0 0\n}\nMOTION");
     write("nan.bvh", "100.7145", "NaN");
@@ -193,10 +168,10 @@ fn a_mistake_is_one_line_and_leaves_nothing() {
     write("other.bvh", "JOINT Forearm", "JOINT Elbow");
     let (head, frames) = text.split_once("Frames: 101\nFrame Time: 0.02\n").unwrap();
     let one = format!("{head}Frames: 1\nFrame Time: 0.02\n{}\n", frames.lines().next().unwrap());
-    fs::write(at("one.bvh"), one).unwrap();
-    fs::write(at("noise.bvh"), [0x89, b'P', b'N', b'G', 0, 1, 2, 255]).unwrap();
-    fs::write(at("robot.urdf"), "<robot name='r'/>").unwrap();
-    succeed(folder.path(), "body import walk.bvh --out body.toml");
+    folder.write("one.bvh", one);
+    folder.write("noise.bvh", [0x89, b'P', b'N', b'G', 0, 1, 2, 255]);
+    folder.write("robot.urdf", "<robot name='r'/>");
+    folder.succeed("body import walk.bvh --out body.toml");
     for (arguments, expected) in [
         ("body import two.bvh --out b.toml", "two.bvh: line 66: a second ROOT"),
         ("body import nan.bvh --out b.toml", "nan.bvh: line 118: number 1 is `NaN`, but must be a number"),
@@ -217,7 +192,7 @@ fn a_mistake_is_one_line_and_leaves_nothing() {
         ("simulate --movement walk.bvh --body longer.bvh --out s", "longer.bvh: line 1"),
         (
             "simulate --movement longer.bvh --body body.toml --out s",
-            "body.toml: cannot move as longer.bvh: the joint of its part `Shin` is",
+            "body.toml: cannot move as longer.bvh: the joint of its part `",
         ),
         (
             "simulate --movement other.bvh --body body.toml --out s",
@@ -228,15 +203,8 @@ fn a_mistake_is_one_line_and_leaves_nothing() {
             "the skeletons or their units differ",
         ),
     ] {
-        let output = run(folder.path(), arguments);
-        let told = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(output.status.code(), Some(2), "{arguments}: {told}");
-        assert!(
-            told.starts_with("bodyschema: ") && told.contains(expected),
-            "{arguments}: {told:?} lacks {expected:?}"
-        );
-        assert_eq!((told.lines().count(), output.stdout.len()), (1, 0), "{arguments}: {told}");
-        assert!(!at("b.toml").exists() && !at("s").exists(), "{arguments}");
+        folder.refuse(arguments, expected);
+        assert!(!folder.at("b.toml").exists() && !folder.at("s").exists(), "{arguments}");
     }
     // Options of recorded movements need one.
     for arguments in [
@@ -244,7 +212,7 @@ fn a_mistake_is_one_line_and_leaves_nothing() {
         "simulate --scale 1 --out s",
         "body import walk.bvh --scale 0 --out b.toml",
     ] {
-        assert_eq!(run(folder.path(), arguments).status.code(), Some(2), "{arguments}");
-        assert!(!at("b.toml").exists() && !at("s").exists(), "{arguments}");
+        assert_eq!(folder.run(arguments).status, Some(2), "{arguments}");
+        assert!(!folder.at("b.toml").exists() && !folder.at("s").exists(), "{arguments}");
     }
 }

@@ -52,9 +52,11 @@ impl Plot {
             "{}: has no table of a figure (fig04-agent.csv to fig11b-tree.csv)",
             figures.display()
         );
-        say(format!("{} figures in {}", pictures.len(), figures.display()))?;
         if finished {
             Page::read(folder)?.write(folder)?;
+        }
+        say(format!("{} figures in {}", pictures.len(), figures.display()))?;
+        if finished {
             say(format!("report in {}", folder.join("report.html").display()))?;
         }
         Ok(ExitCode::SUCCESS)

@@ -71,11 +71,10 @@ impl Attached {
         };
         let scale = scale.filter(|scale| is_moderate(*scale)).ok_or(Misfit::NoScale)?;
         let size = anchors().map(|(_, anchor)| anchor.norm()).fold(0.0, f64::max);
-        for (part, anchor) in anchors() {
-            let distance = (anchor - scale * units(part)).norm();
-            if distance > FIT * size {
-                return Err(Misfit::Elsewhere { part: names[part].clone(), distance });
-            }
+        let distances = anchors().map(|(part, anchor)| (part, (anchor - scale * units(part)).norm()));
+        let farthest = distances.reduce(|most, next| if next.1 > most.1 { next } else { most });
+        if let Some((part, distance)) = farthest.filter(|(_, distance)| *distance > FIT * size) {
+            return Err(Misfit::Elsewhere { part: names[part].clone(), distance });
         }
         let rest = (0..names.len()).map(|part| scale * units(part)).collect();
         Ok(Self { joints, rest, scale })

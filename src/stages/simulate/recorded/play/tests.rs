@@ -7,12 +7,10 @@ use super::super::jumps::longest_stretch;
 use super::super::skeleton::{Channel, RecordedJoint};
 use super::*;
 use crate::stages::agent::{Freedom, Part, Shape, Site, across};
-use crate::stages::sense::{Sense, sense};
 use Channel::{Position, Rotation};
 
 const FRAME: f64 = 0.01; // s
 const UNIT: f64 = 0.01; // m
-const WATER: f64 = 1010.0; // kg/m³
 
 fn joint(name: &str, parent: Option<usize>, offset: Vector3, channels: &[Channel]) -> RecordedJoint {
     RecordedJoint { name: name.to_owned(), parent, offset, channels: channels.to_vec(), ends: Vec::new() }
@@ -80,18 +78,24 @@ fn error(interval: f64, mutant: bool) -> f64 {
     let trajectory =
         play(&agent, &attached, &movement, &frames, interval, samples(&movement, &frames, interval));
     assert_eq!(trajectory.samples(), (4.0 / interval + 1e-6) as usize);
-    let settings = Sense { interval, fluid_density: WATER, threshold: 0.0 };
-    let tactile = sense(&agent, &trajectory, &settings);
     let mut worst = 0.0_f64;
-    for (site, series) in agent.sites.iter().zip(tactile.series()) {
-        for (sample, pressure) in series.iter().enumerate() {
+    for site in &agent.sites {
+        let poses: Vec<&Pose> = trajectory.poses[site.part..].iter().step_by(agent.parts.len()).collect();
+        for (sample, pair) in poses.windows(2).enumerate() {
             // A backward difference is the velocity in the middle of its interval, and the normal is of its end.
             let time = (sample as f64 + if mutant { 10.5 } else { 0.5 }) * interval;
-            let felt = (f64::from(*pressure) / WATER).sqrt();
+            let felt = difference(pair[0], pair[1], site, interval).max(0.0);
             worst = worst.max((felt - outward(&agent, site, time).max(0.0)).abs());
         }
     }
     worst
+}
+
+/// The outward speed of a sensor by a backward difference, as equation 27 has it, m/s.
+fn difference(before: &Pose, now: &Pose, site: &Site, interval: f64) -> f64 {
+    let (from, to) = (before.place(site.position), now.place(site.position));
+    let normal = now.rotation.map(|row| (0..3).map(|i| row[i] * site.normal[i]).sum::<f64>());
+    (0..3).map(|k| (to[k] - from[k]) / interval * normal[k]).sum()
 }
 
 #[test]
