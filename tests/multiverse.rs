@@ -6,6 +6,10 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
+mod support;
+
+use support::folder::{files, rows};
+
 /// Bodies of few sensors, for seconds. One of the two controllers is unstable.
 const DESIGN: &str = r#"
 title = "A multiverse"
@@ -87,29 +91,6 @@ fn bodyschema(folder: &Path, arguments: &str) -> Output {
 fn succeed(folder: &Path, arguments: &str) {
     let output = bodyschema(folder, arguments);
     assert_eq!(output.status.code(), Some(0), "{output:?}");
-}
-
-/// All files of a folder, by name.
-fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
-    let mut all = BTreeMap::new();
-    for entry in fs::read_dir(folder).unwrap().map(Result::unwrap) {
-        let name = entry.file_name().into_string().unwrap();
-        if name == "ro-crate-metadata.json" {
-            // Tells runs apart.
-            continue;
-        }
-        if entry.path().is_file() {
-            all.insert(name, fs::read(entry.path()).unwrap());
-        } else {
-            let inner = files(&entry.path()).into_iter();
-            all.extend(inner.map(|(inner, bytes)| (format!("{name}/{inner}"), bytes)));
-        }
-    }
-    all
-}
-
-fn rows(path: &Path) -> Vec<BTreeMap<String, String>> {
-    csv::Reader::from_path(path).unwrap().deserialize().map(Result::unwrap).collect()
 }
 
 #[test]

@@ -5,6 +5,10 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
+mod support;
+
+use support::folder::{files, rows};
+
 /// Bodies of few sensors, for a second or two, and what else the designs below rest on.
 const SMALL: &str = "
 agent = { part_length = 0.3, part_radius = 0.05, gap = 0.0 }
@@ -124,30 +128,6 @@ fn succeed(folder: &Path, arguments: &str) -> String {
     let output = bodyschema(folder, arguments);
     assert_eq!(output.status.code(), Some(0), "{output:?}");
     String::from_utf8(output.stderr).unwrap()
-}
-
-fn rows(path: &Path) -> Vec<BTreeMap<String, String>> {
-    csv::Reader::from_path(path).unwrap().deserialize().map(Result::unwrap).collect()
-}
-
-/// The files of a folder but its checkpoints, by name.
-fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
-    let mut all = BTreeMap::new();
-    for entry in fs::read_dir(folder).unwrap().map(Result::unwrap) {
-        let name = entry.file_name().into_string().unwrap();
-        if name == "ro-crate-metadata.json" {
-            // Tells runs apart.
-            continue;
-        }
-        if entry.path().is_file() {
-            all.insert(name, fs::read(entry.path()).unwrap());
-        } else if name != "checkpoints" {
-            all.extend(
-                files(&entry.path()).into_iter().map(|(inner, bytes)| (format!("{name}/{inner}"), bytes)),
-            );
-        }
-    }
-    all
 }
 
 #[test]
