@@ -22,8 +22,8 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 EXPERIMENTS = ["exp1", "exp2"]
 # Keys of published.toml that are words for people; the rest decides.
 WORDS = ["statement", "wording", "place", "title", "says"]
-# Settings that came after the registration and count for nothing while the first one has this value.
-LATER = {"motion": {"movement": "random", "rhythm": None}}
+# Settings of the motion that came after the registration, and count for nothing in a random movement.
+LATER = ["movement", "rhythm"]
 
 
 def main():
@@ -62,9 +62,9 @@ def digest(path):
         return [decided(inner) for inner in value] if isinstance(value, list) else value
 
     values = decided(tomllib.loads(path.read_text()))
-    motion, later = values.get("motion", {}), LATER["motion"]
-    if motion.get("movement") == later["movement"]:
-        values["motion"] = {key: value for key, value in motion.items() if key not in later}
+    motion = values.get("motion", {})
+    if motion.get("movement") == "random":
+        values["motion"] = {key: value for key, value in motion.items() if key not in LATER}
     return hashlib.sha256(json.dumps(values, sort_keys=True).encode()).hexdigest()
 
 

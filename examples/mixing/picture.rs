@@ -1,4 +1,4 @@
-//! Sample the pictures of the study.
+//! Draw the pictures of the study.
 
 use std::error::Error;
 use std::path::Path;

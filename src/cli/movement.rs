@@ -10,14 +10,13 @@ use crate::files::FileError;
 use crate::files::body::{BodyFile, NamedBody, SkinEntry};
 use crate::files::bvh::read_bvh;
 use crate::files::import::{Bones, Imported, SKIN, body_of_skeleton, names};
+use crate::settings::{MAX_PRESSURES, MAX_SAMPLES};
 use crate::stages::agent::Freedom;
 use crate::stages::simulate::Trajectory;
 use crate::stages::simulate::recorded::{
     Attached, RecordedMovement, Stretch, longest_stretch, play, samples, unmoved,
 };
 
-/// Most samples, and most pressures in all: 13 GB of poses, 8 GB of pressures.
-const MOST: (f64, f64) = (2e7, 2e9);
 /// Share of frames that repeat the one before from which on a note says so.
 const REPEATED: f64 = 0.1;
 /// Distance by which joints come apart from which on a note says so, m.
@@ -107,7 +106,7 @@ impl Recorded {
         );
         let pressures = samples as f64 * body.agent.sites.len() as f64;
         ensure!(
-            samples as f64 <= MOST.0 && pressures <= MOST.1,
+            samples as f64 <= MAX_SAMPLES && pressures <= MAX_PRESSURES,
             "{}: {samples} samples of {} sensors are more than 20 million samples or 2 billion pressures; give a --duration, or a \
              longer sense.interval",
             path.display(),

@@ -68,6 +68,7 @@ impl Simulate {
             let played = self.recorded.play(movement, body, interval, settings.physics.duration)?;
             let Played { body, trajectory, interval, notes } = played;
             settings.sense.interval = interval;
+            prepare_folder(&self.out)?;
             let told = format!("{interval} s apart");
             self.write(&body.agent, Some(body.rigid_names()), &trajectory, &settings.sense, &told)?;
             notes.into_iter().try_for_each(|note| say(format!("note: {note}")))?;
@@ -98,7 +99,6 @@ impl Simulate {
         told: &str,
     ) -> Result<()> {
         let out = &self.out;
-        prepare_folder(out)?;
         tables::write_truth(&out.join("labels.csv"), &out.join("tree.csv"), &agent.truth())?;
         if let Some(names) = names {
             let rows = names.into_iter().enumerate().map(|(part, name)| NameRow { part, name });

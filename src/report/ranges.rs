@@ -1,4 +1,4 @@
-//! Sample what was reproduced of a claim against its accepted range: a small picture for each row of the report's table.
+//! Draw what was reproduced of a claim against its accepted range: a small picture for each row of the report's table.
 
 use maud::{Markup, html};
 

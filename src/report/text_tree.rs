@@ -1,4 +1,4 @@
-//! Sample a tree of parts in plain text.
+//! Draw a tree of parts in plain text.
 
 use std::collections::BTreeMap;
 

@@ -137,15 +137,17 @@ fn paper_table() -> Table {
 }
 
 fn parse(text: &str, origin: &str) -> Result<Table, SettingsError> {
-    text.parse().map_err(|error: toml::de::Error| {
-        let line = error
-            .span()
-            .map_or(String::new(), |span| format!("line {}: ", 1 + text[..span.start].matches('\n').count()));
-        SettingsError::Malformed {
-            origin: origin.to_owned(),
-            message: one_line(&format!("{line}{}", error.message())),
-        }
+    text.parse().map_err(|error: toml::de::Error| SettingsError::Malformed {
+        origin: origin.to_owned(),
+        message: one_line(&toml_message(text, &error)),
     })
+}
+
+/// What is wrong with a text in TOML, with the number of the line.
+pub(crate) fn toml_message(text: &str, error: &toml::de::Error) -> String {
+    let line = error.span().map(|span| 1 + text[..span.start].matches('\n').count());
+    let line = line.map_or(String::new(), |line| format!("line {line}: "));
+    format!("{line}{}", error.message())
 }
 
 /// Lays `over` on `base`, key by key; `section` and `origin` are for the message.

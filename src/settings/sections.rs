@@ -15,6 +15,11 @@ use crate::stages::schema::{Schema, matrices_fit};
 use crate::stages::sense::Sense;
 use crate::stages::simulate::{Motion, Physics};
 
+/// Most samples of a movement, of which 13 GB are poses.
+pub(crate) const MAX_SAMPLES: f64 = 2e7;
+/// Most pressures of a movement, which are 8 GB.
+pub(crate) const MAX_PRESSURES: f64 = 2e9;
+
 /// All settings of a run. Field by field the twin of `reproduce/paper.toml`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -84,8 +89,7 @@ impl Settings {
         )
     }
 
-    /// Checks that samples are whole steps apart, and not too many to keep or to wait for: 2 billion pressures are 8 GB,
-    /// 20 million samples 13 GB of poses, and a billion steps take hours. Checks that a step is short enough for a rhythm.
+    /// Checks that samples are whole steps apart, and not too many to keep or to wait for: a billion steps take hours. Checks that a step is short enough for a rhythm.
     ///
     /// # Errors
     /// The first setting that is outside its range for a body with so many sensors.
@@ -102,8 +106,8 @@ impl Settings {
         check(
             "physics.duration",
             duration,
-            (1.0 - 1e-9..=2e7).contains(&samples)
-                && samples * sensors as f64 <= 2e9
+            (1.0 - 1e-9..=MAX_SAMPLES).contains(&samples)
+                && samples * sensors as f64 <= MAX_PRESSURES
                 && steps <= 1e9
                 && duration <= 1e9,
             "at least sense.interval and at most 1000000000, with at most 20 million samples, 2 billion pressures and \

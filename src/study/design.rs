@@ -8,9 +8,10 @@ use serde::{Deserialize, Serialize};
 use toml::Table;
 
 use super::choices::{Gains, short};
-use super::extends::{BUNDLED, DesignText, reason};
+use super::extends::{BUNDLED, DesignText};
 use super::levels::{DrawCounts, Level};
 use crate::analysis::published::{Claim, Experiment, Measure};
+use crate::settings::toml_message;
 use crate::tasks::error::ExperimentError;
 
 /// The name of the base among configurations that vary one factor at a time.
@@ -66,7 +67,7 @@ pub(crate) struct Design {
     /// The claims; without any, those of `reproduce/scored.toml`.
     #[serde(rename = "claim", default)]
     pub claims: Vec<JudgedClaim>,
-    /// NamedConfiguration configurations; changes are from the first.
+    /// Named configurations; changes are from the first.
     #[serde(rename = "configuration", default, skip_serializing_if = "Vec::is_empty")]
     pub configurations: Vec<NamedConfiguration>,
     /// Open settings, and the values that are tried.
@@ -196,7 +197,7 @@ impl Design {
     pub(crate) fn parse(source: &DesignText) -> Result<Self, ExperimentError> {
         let wrong = |message: String| ExperimentError::design(&source.origin, message);
         let mut design: Self =
-            toml::from_str(&source.text).map_err(|error| wrong(reason(&source.text, &error)))?;
+            toml::from_str(&source.text).map_err(|error| wrong(toml_message(&source.text, &error)))?;
         design.origin.clone_from(&source.origin);
         if design.claims.is_empty() {
             design.claims = scored();

@@ -5,7 +5,7 @@ use std::path::Path;
 use toml::{Table, Value};
 
 use super::choices::merge;
-use crate::settings::read_toml;
+use crate::settings::{read_toml, toml_message};
 use crate::tasks::error::ExperimentError;
 
 /// The designs that the program brings: those of `reproduce/`, by name.
@@ -100,14 +100,7 @@ fn find(design: &Path) -> Result<(String, String), ExperimentError> {
 }
 
 fn parse(text: &str, origin: &str) -> Result<Table, ExperimentError> {
-    text.parse().map_err(|error: toml::de::Error| ExperimentError::design(origin, reason(text, &error)))
-}
-
-/// Why a text is no design, with the line.
-pub(super) fn reason(text: &str, error: &toml::de::Error) -> String {
-    let line = error.span().map(|span| 1 + text[..span.start].matches('\n').count());
-    let line = line.map_or(String::new(), |line| format!("line {line}: "));
-    format!("{line}{}", error.message())
+    text.parse().map_err(|error: toml::de::Error| ExperimentError::design(origin, toml_message(text, &error)))
 }
 
 #[cfg(test)]

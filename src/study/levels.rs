@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct DrawCounts {
-    /// DrawCounts of the factors at the level of the movement.
+    /// Draws of the factors at the level of the movement.
     pub movements: usize,
     /// For each movement, draws of the factors at the level of the distances.
     pub distances: usize,

@@ -46,10 +46,11 @@ pub(crate) fn run(
 ) -> Result<(), ExperimentError> {
     keep_design(text, out)?;
     let work = StudyWork::new(plan, Checkpoints::new(out, &KEY));
-    let left: Vec<&Movement> =
-        work.of_shard(shard).into_iter().filter(|movement| !work.is_finished(movement)).collect();
     // Of a movement, what other configurations inferred from it before is there.
-    let groups: Vec<Vec<Task>> = left.iter().map(|movement| work.unfinished(movement)).collect();
+    let unfinished =
+        |movement| Some((movement, work.unfinished(movement))).filter(|(_, tasks)| !tasks.is_empty());
+    let (left, groups): (Vec<&Movement>, Vec<Vec<Task>>) =
+        work.of_shard(shard).into_iter().filter_map(unfinished).unzip();
     let bar =
         progress(groups.iter().map(|tasks| Batch::length(tasks)).sum(), format!("{} movements", left.len()));
     let (begun, finished) = (Instant::now(), AtomicUsize::new(0));
@@ -193,10 +194,6 @@ impl StudyWork {
         movement.tasks.iter().filter(|task| !kept.contains_key(&task.name)).cloned().collect()
     }
 
-    fn is_finished(&self, movement: &Movement) -> bool {
-        self.unfinished(movement).is_empty()
-    }
-
     /// Keeps what a movement gave, beside what other configurations inferred from it before.
     fn keep(&self, movement: &Movement, tasks: &[Task], outcomes: Vec<TaskOutcome>) -> Result<(), FileError> {
         let mut kept = self.recall(movement);
@@ -216,29 +213,23 @@ impl StudyWork {
         out: &Path,
         mut take: impl FnMut(usize, Outcome),
     ) -> Result<(), ExperimentError> {
-        let missing = self.movements.iter().filter(|movement| !self.is_finished(movement)).count();
-        if missing > 0 {
-            let message = format!(
-                "lacks {missing} of {} movements of this design by this program; run all shards before --gather",
-                self.movements.len()
-            );
-            return Err(FileError::new(&out.join("checkpoints"), message).into());
-        }
         let mut last_user = HashMap::new();
         for (at, tasks) in self.tasks_of.iter().enumerate() {
             last_user.extend(tasks.iter().map(|(movement, ..)| (*movement, at)));
         }
         let mut held: HashMap<usize, MovementResults> = HashMap::new();
+        let mut missing = HashSet::new();
         for (at, tasks) in self.tasks_of.iter().enumerate() {
             let mut outcome = Outcome::default();
             for (movement, name, coordination) in tasks {
                 let kept = held.entry(*movement).or_insert_with(|| self.recall(&self.movements[*movement]));
-                match &kept[name] {
-                    Ok(gave) => {
+                match kept.get(name) {
+                    None => drop(missing.insert(*movement)),
+                    Some(Ok(gave)) => {
                         outcome.records.extend(gave.records());
                         outcome.resolution = outcome.resolution.worse(gave.resolution);
                     }
-                    Err(reason) => {
+                    Some(Err(reason)) => {
                         outcome
                             .failures
                             .push(Failure { coordination: *coordination, reason: reason.clone() });
@@ -246,9 +237,19 @@ impl StudyWork {
                 }
             }
             held.retain(|movement, _| last_user[movement] > at);
-            take(at, outcome);
+            if missing.is_empty() {
+                take(at, outcome);
+            }
         }
-        Ok(())
+        if missing.is_empty() {
+            return Ok(());
+        }
+        let message = format!(
+            "lacks {} of {} movements of this design by this program; run all shards before --gather",
+            missing.len(),
+            self.movements.len()
+        );
+        Err(FileError::new(&out.join("checkpoints"), message).into())
     }
 
     /// Removes all that was kept, once the tables are written.

@@ -13,7 +13,7 @@ const MAX_RESIDUAL: f64 = 1.5;
 /// the standard error of the value in units of the noise.
 const TOUCH_LIMIT: [f64; 2] = [0.5, 3.5];
 
-/// Puts lines in the place of pressures, and 0 where they are within the noise. `size` is the middle of the sizes of second differences.
+/// Replaces pressures by fitted values, and by 0 where these are within the noise. `size` is the median absolute second difference.
 pub(super) fn smooth(series: &mut [f32], size: f32) {
     let size = f64::from(size);
     let sums = sums(series);
