@@ -31,6 +31,8 @@
 //! # }
 //! ```
 
+use std::fmt;
+
 use rand::Rng;
 
 use crate::recording::Recording;
@@ -45,9 +47,81 @@ const MAX_SENSORS: usize = 800;
 /// Samples that distances are computed from, spread over all.
 const MAX_SAMPLES: usize = 20_000;
 
+/// Residual up to which the motion of its part explains a sensor: without noise, and where most sensors have some.
+const EXPLAINED: [f64; 2] = [0.05, 0.2];
+/// Shares of sensors that are explained from which on rigid parts fit a recording, and may fit it.
+const GOOD: f64 = 0.8;
+const DOUBTFUL: f64 = 0.65;
+/// Different values up to which a sensor has levels, such as on and off.
+const LEVELS: usize = 8;
+/// Samples up to which a recording is short.
+const SHORT: usize = 500;
+
+/// Whether rigid parts explain what sensors felt.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Verdict {
+    /// They do.
+    Good,
+    /// Of some sensors they do not.
+    Doubtful,
+    /// They do not: parts and tree mean nothing.
+    DoesNotFit,
+}
+
+impl fmt::Display for Verdict {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Good => "good",
+            Self::Doubtful => "doubtful",
+            Self::DoesNotFit => "does not fit",
+        })
+    }
+}
+
+/// How well rigid parts explain a recording: said before any tree.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Fit {
+    /// Whether they do.
+    pub verdict: Verdict,
+    /// The share of sensors that the motion of a part explains, 0 to 1. The ends of thin parts, which only joints assign, do not
+    /// count as explained.
+    pub explained: f64,
+    /// What is likely to be the matter, in words, unless the verdict is good.
+    pub cause: Option<&'static str>,
+}
+
+impl Fit {
+    /// Of parts before joints assign the sensors that no part explains.
+    fn new(parts: &RigidParts, recording: &Recording) -> Self {
+        let is_noisy = 2 * recording.noisy > recording.sensors.len();
+        let most = EXPLAINED[usize::from(is_noisy)];
+        let own = parts.labels.iter().zip(&parts.residuals);
+        let count =
+            own.filter(|(label, residual)| !parts.unassigned.contains(label) && **residual <= most).count();
+        let explained = count as f64 / parts.labels.len() as f64;
+        let verdict = match explained {
+            share if share >= GOOD => Verdict::Good,
+            share if share >= DOUBTFUL => Verdict::Doubtful,
+            _ => Verdict::DoesNotFit,
+        };
+        let cause = (verdict != Verdict::Good).then(|| cause(&recording.tactile, is_noisy));
+        Self { verdict, explained, cause }
+    }
+}
+
+impl fmt::Display for Fit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let share = 100.0 * self.explained;
+        write!(f, "fit: {}: rigid motions explain {share:.0} % of the sensors", self.verdict)?;
+        self.cause.map_or(Ok(()), |cause| write!(f, "; likely cause: {cause}"))
+    }
+}
+
 /// The estimated parts and joints of a body.
 #[derive(Debug)]
 pub struct Estimate {
+    /// How well rigid parts explain the recording.
+    pub fit: Fit,
     /// The part of each sensor of the recording; none is unassigned.
     pub parts: RigidParts,
     /// How the parts are joined.
@@ -87,11 +161,36 @@ pub fn estimate(
     }
     let (sensors, distances) = distances(&recording.tactile, levels);
     tick();
-    let parts = rigid_parts(&recording.tactile, &sensors, &distances);
+    let parts = rigid_parts(&recording.tactile, &sensors);
+    let fit = Fit::new(&parts, recording);
     tick();
     let (parts, joints) = refine(&recording.tactile, parts, rng);
     tick();
-    Ok(Estimate { parts, joints, mapped: sensors, distances })
+    Ok(Estimate { fit, parts, joints, mapped: sensors, distances })
+}
+
+/// What is likely to be the matter if rigid parts do not explain a recording.
+fn cause(tactile: &Tactile, is_noisy: bool) -> &'static str {
+    let has_levels = |series: &[f32]| {
+        let mut values: Vec<u32> = Vec::new();
+        series.iter().all(|pressure| {
+            let bits = pressure.to_bits();
+            values.contains(&bits) || {
+                values.push(bits);
+                values.len() <= LEVELS
+            }
+        })
+    };
+    let with_levels = tactile.series().filter(|series| has_levels(series)).count();
+    if 2 * with_levels > tactile.sensors() {
+        "most sensors have a few levels only, such as contact pads, which do not feel speeds"
+    } else if tactile.samples <= SHORT {
+        "the recording is short"
+    } else if is_noisy {
+        "most sensors are noisy"
+    } else {
+        "sensors that feel contact, soft parts, offsets, or sensors that are not read at the same time"
+    }
 }
 
 /// Some sensors, spread over all and rising, and their distances.

@@ -48,7 +48,8 @@ fn one_command_finds_parts_and_tree() {
     with_faults(&folder, "body/tactile.npy", "own.npy");
     let said = folder.run("estimate own.npy --labels body/labels.csv --tree body/tree.csv --out found");
     assert_eq!(said.status, Some(0), "{said:?}");
-    assert!(said.out.starts_with("5 parts of 117 sensors"), "{said:?}");
+    assert!(said.out.starts_with("fit: good: rigid motions explain "), "{said:?}");
+    assert!(said.out.contains("5 parts of 117 sensors"), "{said:?}");
     assert!(said.out.contains("adjusted Rand index 1.000, true tree recovered"), "{said:?}");
     assert!(said.err.contains("3 of 120 sensors are left out (the first, 0, is dead)"), "{said:?}");
     let faults: Vec<String> =
@@ -60,7 +61,10 @@ fn one_command_finds_parts_and_tree() {
     assert!(summary.contains("\"parts\": 5") && summary.contains("\"dropped\": 3"), "{summary}");
     // The parts that were found are parts for `tree`.
     folder.succeed("tree body/tactile.npy --parts found/parts.csv --out joined");
-    assert_eq!(folder.text("joined/tree.csv"), folder.text("found/tree.csv"));
+    let edges = |file: &str| -> Vec<[String; 2]> {
+        folder.rows(file).iter().map(|row| ["child", "parent"].map(|column| row[column].clone())).collect()
+    };
+    assert_eq!(edges("joined/tree.csv"), edges("found/tree.csv"));
 
     let mut silent = npy::read_tactile(&folder.at("body/tactile.npy")).unwrap();
     silent.pressures.fill(0.0);
@@ -71,6 +75,20 @@ fn one_command_finds_parts_and_tree() {
     }
     let said = folder.run("tree body/tactile.npy --parts body/tree.csv --out s");
     assert_eq!(said.status, Some(2), "{said:?}");
+
+    // Contact pads feel no speeds. A tree of before goes, unless one is wanted all the same.
+    let mut pads = npy::read_tactile(&folder.at("body/tactile.npy")).unwrap();
+    pads.pressures.iter_mut().for_each(|pressure| *pressure = f32::from(*pressure > 0.2));
+    npy::write_tactile(&folder.at("pads.npy"), &pads).unwrap();
+    let said = folder.run("estimate pads.npy --out found --force");
+    assert_eq!(said.status, Some(0), "{said:?}");
+    assert!(folder.text("found/report.html").contains("parts and tree mean nothing"));
+    let said = folder.run("estimate pads.npy --out found");
+    assert_eq!(said.status, Some(1), "{said:?}");
+    assert!(said.out.contains("does not fit") && said.out.contains("contact pads"), "{said:?}");
+    assert!(folder.text("found/summary.json").contains("\"fit\": \"does not fit\""));
+    assert!(!folder.at("found/tree.csv").exists() && !folder.at("found/report.html").exists());
+    assert!(folder.at("found/parts.csv").exists());
 }
 
 #[test]

@@ -1,9 +1,10 @@
 //! The subcommand estimate.
 
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use anyhow::{Result, ensure};
+use anyhow::{Context, Result, ensure};
 use clap::Args;
 use serde::Serialize;
 
@@ -12,7 +13,7 @@ use super::options::{SettingsAndSeed, TruthFiles, seconds};
 use super::output::say;
 use super::tree::{self, refuse_truth, say_cleaned};
 use crate::analysis::statistics::mean;
-use crate::estimate::{self, estimate};
+use crate::estimate::{self, Verdict, estimate};
 use crate::files::tables::{write_rows, write_rows_of};
 use crate::files::touch::read_touch;
 use crate::files::{prepare_folder, write_text};
@@ -33,6 +34,9 @@ use crate::tasks::progress::progress;
 ///
 /// A part is a rigid body: one rigid motion explains what all its sensors feel. Each sensor is assigned to the part with the
 /// smallest residual: residual is the share of residual variance of the sensor, next_residual that for the next best part.
+/// The fit comes first: good, doubtful or does not fit, by the share of sensors that a rigid motion explains. If it does not fit, no
+/// tree is shown or written without --force, and the exit status is 1.
+///
 /// Parts are joined as by `tree`: support is the bootstrap support of an edge, given the parts. Unless --settings says
 /// otherwise, pressures are quantised into eight levels for each sensor (reproduce/estimate.toml).
 #[derive(Args)]
@@ -46,6 +50,9 @@ pub(super) struct Estimate {
     /// Time between two samples, s; without it, the report counts samples
     #[arg(long, value_name = "SECONDS", value_parser = seconds)]
     interval: Option<f64>,
+    /// Show tree and report even if rigid parts do not explain the recording
+    #[arg(long)]
+    force: bool,
     /// Folder to write to
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
@@ -56,6 +63,9 @@ struct DroppedRow {
     sensor: usize,
     fault: String,
 }
+
+/// The exit status where rigid parts do not explain the recording.
+const NO_FIT: u8 = 1;
 
 /// A row of parts.csv.
 #[derive(Serialize)]
@@ -70,6 +80,8 @@ struct PartRow {
 /// summary.json.
 #[derive(Serialize)]
 struct Summary {
+    fit: String,
+    explained: f64,
     samples: usize,
     sensors: usize,
     dropped: usize,
@@ -113,7 +125,16 @@ impl Estimate {
         let mut rng = stream(seed, 1, "co-motion", 0);
         let found = estimate(&recording, &settings.quantise, &mut rng, &|| bar.inc(1))?;
         bar.finish_and_clear();
-        let summary = write(out, &found, &recording, seed)?;
+        let shows_tree = self.force || found.fit.verdict != Verdict::DoesNotFit;
+        let summary = write(out, &found, &recording, seed, shows_tree)?;
+        say(found.fit.to_string())?;
+        if !shows_tree {
+            say(format!(
+                "no tree is shown; {} has parts.csv and summary.json, and --force writes the rest",
+                out.display()
+            ))?;
+            return Ok(ExitCode::from(NO_FIT));
+        }
         let shown = Shown {
             name: in_file(),
             interval: self.interval,
@@ -146,8 +167,14 @@ impl Estimate {
     }
 }
 
-/// Writes all files.
-fn write(out: &Path, found: &estimate::Estimate, recording: &Recording, seed: u64) -> Result<Summary> {
+/// Writes all files, or those without the tree; then, a tree and a report of before are removed.
+fn write(
+    out: &Path,
+    found: &estimate::Estimate,
+    recording: &Recording,
+    seed: u64,
+    shows_tree: bool,
+) -> Result<Summary> {
     let Recording { tactile, sensors, dropped, lost_samples, noisy, signed, .. } = recording;
     let parts = sensors.iter().enumerate().map(|(at, &sensor)| {
         let (next_part, next_residual) = found.parts.alternatives[at].first().copied().unzip();
@@ -157,8 +184,19 @@ fn write(out: &Path, found: &estimate::Estimate, recording: &Recording, seed: u6
     write_rows(&out.join("parts.csv"), parts)?;
     let row = |(sensor, fault): &(usize, Fault)| DroppedRow { sensor: *sensor, fault: fault.to_string() };
     write_rows_of(&out.join("dropped.csv"), &["sensor", "fault"], dropped.iter().map(row))?;
-    tree::write(out, &found.joints)?;
+    if shows_tree {
+        tree::write(out, &found.joints)?;
+    } else {
+        for name in ["tree.csv", "edges.csv", "report.html"] {
+            let file = out.join(name);
+            if file.exists() {
+                fs::remove_file(&file).with_context(|| file.display().to_string())?;
+            }
+        }
+    }
     let summary = Summary {
+        fit: found.fit.verdict.to_string(),
+        explained: found.fit.explained,
         samples: tactile.samples,
         sensors: sensors.len() + dropped.len(),
         dropped: dropped.len(),

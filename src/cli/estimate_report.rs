@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::tree::in_words;
 use crate::analysis::statistics::quantile;
-use crate::estimate::Estimate;
+use crate::estimate::{Estimate, Verdict};
 use crate::recording::Recording;
 use crate::report::estimated::{Estimated, PartLine};
 use crate::report::viewer::frames::Frames;
@@ -43,12 +43,17 @@ impl Shown<'_> {
     fn answers(&self, found: &Estimate, recording: &Recording) -> Vec<String> {
         let joints = &found.joints;
         let sure = joints.tree.iter().filter(|edge| joints.support(edge) >= 0.95).count();
-        let mut answers = vec![format!(
+        let fit = match found.fit.verdict {
+            Verdict::DoesNotFit => format!("{}; parts and tree mean nothing", found.fit),
+            _ => found.fit.to_string(),
+        };
+        let parts = format!(
             "{} parts of {} sensors; {sure} of {} joints have a bootstrap support of at least 95 % (given the parts)",
             joints.ranks.len(),
             recording.sensors.len(),
             joints.tree.len()
-        )];
+        );
+        let mut answers = vec![fit, parts];
         if let Some(truth) = self.truth {
             let score = score(&found.parts.labels, &joints.tree, &recording.truth(truth), 1.0);
             answers.push(format!("Against the truth: {}", in_words(&score)));

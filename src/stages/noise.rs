@@ -3,26 +3,29 @@
 //! In: [`Tactile`] pressures of sensors that all change. Out: the same, smoothed where a sensor has noise, with 0 where a
 //! pressure is within it.
 //!
-//! Noise that is new at each sample shows in the second differences of a sensor, p(t−1) − 2p(t) + p(t+1), by three marks, and all of
+//! Noise that is new at each sample shows in the second differences of a sensor, p(t−1) − 2p(t) + p(t+1), by four marks, and all of
 //! them have to be seen:
 //!
 //! * It never rests. Nearly all differences are other than 0, 7 of 8 even where values below 0 are cut; a sensor that now and then
 //!   is on the lee side of its part has fewer.
 //! * It has one size. Of Gaussian noise, the median absolute difference is 2.1 times the lower quartile. Touch, which is
 //!   nothing for a while and then grows large, has all sizes.
+//! * It comes to each sensor by itself. What [several sensors share](shared) is movement, however rough.
 //! * It has no memory. Two differences that share no sample, three samples apart, have the same sign half the time; of a smooth
 //!   movement, or of one that rings from step to step, they have it more often.
 //!
 //! On the body of the paper with 120 sensors, at p = 0 and 0.9, of 300 to 15,000 samples, and signed or not (seeds 11 to 13), no sensor
-//! without noise has all three marks, and every sensor with noise of 0.01 or 0.1 of its root mean square has them. Any one mark alone
+//! without noise has all of these marks, and every sensor with noise of 0.01 or 0.1 of its root mean square has them. Any one mark alone
 //! fails: where joints rest for long, few differences are left, and they may well have one size.
 //!
 //! The median is 1.0 to 1.2 standard deviations of the noise where values below 0 are cut, and 1.65 where they are not.
 
+mod shared;
 mod smooth;
 
 use rayon::prelude::*;
 
+use self::shared::Signs;
 use self::smooth::smooth;
 use crate::stages::sense::Tactile;
 
@@ -42,12 +45,23 @@ const MIN_SIGNAL_ONE_IN: usize = 1000;
 /// The pressures above the noise, and how many sensors have noise.
 pub fn above_noise(mut tactile: Tactile) -> (Tactile, usize) {
     let samples = tactile.samples;
-    let cut = |series: &mut [f32]| {
-        let Some(size) = size(series) else { return 0 };
-        smooth(series, size);
+    let mut sizes: Vec<Option<f32>> = tactile.pressures.par_chunks_exact(samples).map(size).collect();
+    if sizes.iter().any(Option::is_some) {
+        let signs = Signs::of(&tactile);
+        let is_shared = |sensor: usize| {
+            (0..signs.len()).any(|other| other != sensor && signs[sensor].are_shared_with(&signs[other]))
+        };
+        sizes = (0..sizes.len())
+            .into_par_iter()
+            .map(|sensor| sizes[sensor].filter(|_| !is_shared(sensor)))
+            .collect();
+    }
+    let cut = |(series, size): (&mut [f32], &Option<f32>)| {
+        let Some(size) = size else { return 0 };
+        smooth(series, *size);
         1
     };
-    let noisy = tactile.pressures.par_chunks_exact_mut(samples).map(cut).sum();
+    let noisy = tactile.pressures.par_chunks_exact_mut(samples).zip(&sizes).map(cut).sum();
     (tactile, noisy)
 }
 
@@ -124,6 +138,19 @@ mod tests {
             let tactile = Tactile { samples: few.len().max(1), pressures: few };
             assert_eq!(above_noise(tactile.clone()), (tactile, 0));
         }
+    }
+
+    #[test]
+    fn what_sensors_share_is_movement() {
+        let rng = &mut stream(3, 1, "noise", 0);
+        // Two sensors of one part that jitters: the same errors, of other sizes.
+        let (one, other) = (noisy(&touch(), 0.5, rng), noisy(&touch(), 0.5, rng));
+        let shared: Vec<f32> = one.iter().zip(touch()).map(|(one, touch)| 2.0 * one - touch).collect();
+        let noise =
+            |series: &[&[f32]]| above_noise(Tactile { samples: one.len(), pressures: series.concat() }).1;
+        assert_eq!(noise(&[&one, &other]), 2);
+        assert_eq!(noise(&[&one, &shared]), 0);
+        assert_eq!(noise(&[&one, &shared, &other]), 1);
     }
 
     #[test]

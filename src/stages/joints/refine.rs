@@ -122,7 +122,13 @@ impl<'a> Refinement<'a> {
     fn assigned(&mut self, parts: &mut RigidParts) -> (Vec<usize>, Vec<MotionSubspace>) {
         let (known, clusters) = parts_and_unassigned(parts);
         let (clusters, rest) = largest(clusters);
-        let mut motions = self.motions(&known.values().collect::<Vec<_>>());
+        let learned: Vec<&Vec<usize>> =
+            known.iter().filter(|(part, _)| !parts.motions.contains_key(part)).map(|(_, own)| own).collect();
+        let mut learned = self.motions(&learned).into_iter();
+        let mut motions: Vec<MotionSubspace> = known
+            .keys()
+            .map(|part| parts.motions.get(part).cloned().or_else(|| learned.next()).expect("learned"))
+            .collect();
         let mut names: Vec<usize> = known.into_keys().collect();
         let of_clusters = self.motions(&clusters.values().collect::<Vec<_>>());
         let members: Vec<&[usize]> = clusters.values().map(Vec::as_slice).collect();
@@ -161,6 +167,7 @@ impl<'a> Refinement<'a> {
 
     /// Makes a part unassigned clusters of sensors that feel the same.
     fn dissolve(&self, parts: &mut RigidParts, part: usize) {
+        parts.motions.remove(&part);
         let own: Vec<usize> = (0..parts.labels.len()).filter(|at| parts.labels[*at] == part).collect();
         for cluster in similar(&self.roots, &own) {
             let name = parts.labels.iter().chain(&parts.unassigned).max().map_or(0, |last| last + 1);
@@ -224,6 +231,7 @@ mod tests {
             residuals: vec![0.0; labels.len()],
             alternatives: (0..labels.len()).map(others).collect(),
             unassigned: (2..2 + singles).collect(),
+            motions: BTreeMap::new(),
             labels,
         };
         (Tactile { samples, pressures }, parts)
@@ -260,7 +268,7 @@ mod tests {
         let (residuals, alternatives) = (vec![0.0; labels.len()], vec![vec![(0, 0.5)]; labels.len()]);
         (
             Tactile { samples, pressures },
-            RigidParts { labels, residuals, alternatives, unassigned: Vec::new() },
+            RigidParts { labels, residuals, alternatives, unassigned: Vec::new(), motions: BTreeMap::new() },
         )
     }
 

@@ -14,15 +14,22 @@ pub(super) struct Als<'a> {
     values: Vec<&'a [f64]>,
     /// At each sample, the least root that is felt; infinite after the last sample.
     thresholds: Vec<f64>,
+    /// What roots that are not informative are taken for, by sensor, if for anything.
+    completed: Vec<&'a [f64]>,
+    /// The weight of a completed root.
+    weight: f64,
 }
 
 impl<'a> Als<'a> {
     /// Of roots, samples × sensors, which are felt from the threshold of their sample on.
     pub(super) fn new(values: MatRef<'a, f64>, thresholds: &[f64]) -> Self {
-        let column =
-            |sensor| values.col(sensor).try_as_col_major().expect("roots are kept by sensor").as_slice();
         let padded = [thresholds, &[f64::INFINITY; LANES]].concat();
-        Self { values: (0..values.ncols()).map(column).collect(), thresholds: padded }
+        Self { values: by_sensor(values), thresholds: padded, completed: Vec::new(), weight: 0.0 }
+    }
+
+    /// The same, where each root that is not informative is taken for a completed one, with this weight.
+    pub(super) fn with_completed(self, completed: MatRef<'a, f64>, weight: f64) -> Self {
+        Self { completed: by_sensor(completed), weight, ..self }
     }
 
     /// Updates w at each sample by least squares over its informative roots, by w as it was.
@@ -70,38 +77,48 @@ impl<'a> Als<'a> {
         Arch::new().dispatch(work).map(|sum| sum / motion.nrows() as f64)
     }
 
+    /// For each sensor, the residual sum of squares of its informative roots, and their number.
+    pub(super) fn residuals(&self, loadings: MatRef<'_, f64>, motion: &Mat<f64>) -> Vec<[f64; 2]> {
+        Arch::new().dispatch(Residuals { als: self, loadings: &by_row(loadings), motion })
+    }
+
     /// Roots of a sensor at samples from `t` on, as many as a register holds.
     #[inline(always)]
     fn roots<S: Simd>(&self, simd: S, sensor: usize, t: usize) -> S::f64s {
         load(simd, self.values[sensor], t)
     }
 
-    /// Which of these roots are informative.
+    /// The informative ones of the roots of a sensor at samples from `t` on, where these are predicted.
     #[inline(always)]
-    fn informative<S: Simd>(
-        &self,
-        simd: S,
-        root: S::f64s,
-        threshold: S::f64s,
-        predicted: S::f64s,
-    ) -> Informative<S> {
+    fn informative<S: Simd>(&self, simd: S, sensor: usize, t: usize, predicted: S::f64s) -> Informative<S> {
+        let (root, threshold) = (self.roots(simd, sensor, t), load(simd, &self.thresholds, t));
         let is_felt = simd.greater_than_or_equal_f64s(root, threshold);
         let should_be = simd.greater_than_f64s(predicted, root);
         let is_informative = simd.or_m64s(is_felt, should_be);
         let none = simd.splat_f64s(0.0);
+        let (weight, instead) = match self.completed.get(sensor) {
+            // After the last sample, motion and roots are 0, and nothing is added.
+            Some(completed) => (simd.splat_f64s(self.weight), load(simd, completed, t)),
+            None => (none, none),
+        };
         Informative {
-            weight: simd.select_f64s(is_informative, simd.splat_f64s(1.0), none),
-            root: simd.select_f64s(is_informative, root, none),
+            weight: simd.select_f64s(is_informative, simd.splat_f64s(1.0), weight),
+            product: simd.select_f64s(is_informative, root, simd.mul_f64s(weight, instead)),
         }
     }
 }
 
 /// The informative ones of some roots.
 struct Informative<S: Simd> {
-    /// 1 where a root is informative, 0 elsewhere.
+    /// 1 where a root is informative; elsewhere 0, or the weight of a completed one.
     weight: S::f64s,
-    /// The root where it is informative, 0 elsewhere.
-    root: S::f64s,
+    /// The root times its weight.
+    product: S::f64s,
+}
+
+fn by_sensor(values: MatRef<'_, f64>) -> Vec<&[f64]> {
+    let column = |sensor| values.col(sensor).try_as_col_major().expect("roots are kept by sensor").as_slice();
+    (0..values.ncols()).map(column).collect()
 }
 
 /// The sums of as many regressions on K regressors as a register holds.
@@ -124,7 +141,7 @@ impl<S: Simd, const K: usize> Sums<S, K> {
     fn add(&mut self, simd: S, regressors: &[S::f64s; K], response: &Informative<S>) {
         for a in 0..K {
             let own = simd.mul_f64s(response.weight, regressors[a]);
-            self.products[a] = simd.mul_add_f64s(response.root, regressors[a], self.products[a]);
+            self.products[a] = simd.mul_add_f64s(response.product, regressors[a], self.products[a]);
             for b in 0..=a {
                 self.squares[a][b] = simd.mul_add_f64s(own, regressors[b], self.squares[a][b]);
             }
@@ -152,12 +169,10 @@ impl<const K: usize> WithSimd for UpdateMotion<'_, K> {
             for at in (0..count).step_by(S::F64_LANES) {
                 let t = first + at;
                 let w = motion_from::<S, K>(simd, motion, t);
-                let threshold = load(simd, &als.thresholds, t);
                 let mut sums = Sums::<S, K>::new(simd);
                 for (sensor, c) in loadings.as_chunks::<K>().0.iter().enumerate() {
                     let c = splat(simd, c);
-                    let root = als.roots(simd, sensor, t);
-                    let response = als.informative(simd, root, threshold, dot(simd, &c, &w));
+                    let response = als.informative(simd, sensor, t, dot(simd, &c, &w));
                     sums.add(simd, &c, &response);
                 }
                 for a in 0..K {
@@ -196,9 +211,7 @@ impl<const K: usize> WithSimd for UpdateLoadings<'_, K> {
                 let mut sums = Sums::<S, K>::new(simd);
                 for t in (0..motion.nrows()).step_by(S::F64_LANES) {
                     let w = motion_from::<S, K>(simd, motion, t);
-                    let threshold = load(simd, &als.thresholds, t);
-                    let root = als.roots(simd, first + lane, t);
-                    let response = als.informative(simd, root, threshold, dot(simd, &c, &w));
+                    let response = als.informative(simd, first + lane, t, dot(simd, &c, &w));
                     sums.add(simd, &w, &response);
                 }
                 for a in 0..K {
@@ -234,7 +247,6 @@ impl WithSimd for Residual<'_> {
         let rank = simd.splat_f64s(k as f64);
         let [mut residuals, mut freedoms] = [none; 2];
         for t in (0..samples).step_by(S::F64_LANES) {
-            let threshold = load(simd, &als.thresholds, t);
             let [mut residual, mut informative] = [none; 2];
             for (sensor, c) in loadings.chunks(k.max(1)).enumerate() {
                 let mut predicted = none;
@@ -242,8 +254,8 @@ impl WithSimd for Residual<'_> {
                     let w = load(simd, motion.col_as_slice(at), t);
                     predicted = simd.mul_add_f64s(simd.splat_f64s(*c), w, predicted);
                 }
-                let found = als.informative(simd, als.roots(simd, sensor, t), threshold, predicted);
-                let error = simd.sub_f64s(found.root, simd.mul_f64s(found.weight, predicted));
+                let found = als.informative(simd, sensor, t, predicted);
+                let error = simd.sub_f64s(found.product, simd.mul_f64s(found.weight, predicted));
                 residual = simd.mul_add_f64s(error, error, residual);
                 informative = simd.add_f64s(informative, found.weight);
             }
@@ -251,6 +263,40 @@ impl WithSimd for Residual<'_> {
             freedoms = simd.add_f64s(freedoms, simd.max_f64s(none, simd.sub_f64s(informative, rank)));
         }
         [simd.reduce_sum_f64s(residuals), simd.reduce_sum_f64s(freedoms)]
+    }
+}
+
+/// [`Als::residuals`].
+struct Residuals<'a> {
+    als: &'a Als<'a>,
+    loadings: &'a [f64],
+    motion: &'a Mat<f64>,
+}
+
+impl WithSimd for Residuals<'_> {
+    type Output = Vec<[f64; 2]>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> Vec<[f64; 2]> {
+        let Self { als, loadings, motion } = self;
+        let none = simd.splat_f64s(0.0);
+        let mut found = Vec::with_capacity(als.values.len());
+        for (sensor, c) in loadings.chunks(motion.ncols().max(1)).enumerate() {
+            let [mut residual, mut informative] = [none; 2];
+            for t in (0..motion.nrows()).step_by(S::F64_LANES) {
+                let mut predicted = none;
+                for (at, c) in c.iter().enumerate() {
+                    let w = load(simd, motion.col_as_slice(at), t);
+                    predicted = simd.mul_add_f64s(simd.splat_f64s(*c), w, predicted);
+                }
+                let own = als.informative(simd, sensor, t, predicted);
+                let error = simd.sub_f64s(own.product, simd.mul_f64s(own.weight, predicted));
+                residual = simd.mul_add_f64s(error, error, residual);
+                informative = simd.add_f64s(informative, own.weight);
+            }
+            found.push([simd.reduce_sum_f64s(residual), simd.reduce_sum_f64s(informative)]);
+        }
+        found
     }
 }
 
@@ -307,83 +353,4 @@ fn store<S: Simd>(to: &mut [f64; LANES], from: usize, numbers: S::f64s) {
 }
 
 #[cfg(test)]
-mod tests {
-    use rand::RngExt;
-
-    use super::*;
-    use crate::numerics::rng::stream;
-
-    /// Random roots, thresholds of samples, loadings and motion.
-    fn example(samples: usize, k: usize, signed: bool) -> (Mat<f64>, Vec<f64>, Mat<f64>, Mat<f64>) {
-        let mut rng = stream(1, 1, "als", samples * 10 + k);
-        let mut random = |rows, columns| Mat::from_fn(rows, columns, |_, _| rng.random_range(-1.0_f64..1.0));
-        let (values, loadings, motion) = (random(samples, 9), random(9, k), random(samples, k));
-        if signed {
-            return (values, vec![f64::NEG_INFINITY; samples], loadings, motion);
-        }
-        let values = Mat::from_fn(samples, 9, |t, sensor| f64::max(0.0, values[(t, sensor)]));
-        (values, vec![0.1; samples], loadings, motion)
-    }
-
-    /// Adds an informative root, and its regressors x, to the sums of squares and products.
-    fn add(sums: &mut (Mat<f64>, Mat<f64>), x: &[f64], is_informative: bool, root: f64) {
-        for (a, own) in x.iter().enumerate().filter(|_| is_informative) {
-            x.iter().enumerate().for_each(|(b, other)| sums.0[(a, b)] += own * other);
-            sums.1[(a, 0)] += own * root;
-        }
-    }
-
-    #[test]
-    fn an_update_solves_the_plain_sums_at_any_number_of_samples() {
-        for (samples, signed) in [(1, false), (31, false), (33, true), (37, false), (70, true)] {
-            for k in 1..=6 {
-                let (values, thresholds, loadings, motion) = example(samples, k, signed);
-                let als = Als::new(values.as_ref(), &thresholds);
-                let row = |of: &Mat<f64>, at: usize| -> Vec<f64> { (0..k).map(|a| of[(at, a)]).collect() };
-                let predicted = |t: usize, sensor: usize| -> f64 {
-                    row(&loadings, sensor).iter().zip(row(&motion, t)).map(|(c, w)| c * w).sum()
-                };
-                let informative = |t: usize, sensor: usize| {
-                    values[(t, sensor)] >= thresholds[t] || predicted(t, sensor) > values[(t, sensor)]
-                };
-                let is_solved = |(squares, products): &(Mat<f64>, Mat<f64>), found: Vec<f64>| {
-                    let found = Mat::from_fn(k, 1, |a, _| found[a]);
-                    let error = squares * &found - products;
-                    // The ridge takes a little.
-                    assert!(error.norm_max() < 1e-4 * (1.0 + found.norm_max()) * (1.0 + squares.norm_max()));
-                };
-                let mut moved = motion.clone();
-                als.update_motion(loadings.as_ref(), &mut moved);
-                for t in 0..samples {
-                    let mut sums = (Mat::zeros(k, k), Mat::zeros(k, 1));
-                    (0..9).for_each(|sensor| {
-                        add(&mut sums, &row(&loadings, sensor), informative(t, sensor), values[(t, sensor)]);
-                    });
-                    is_solved(&sums, row(&moved, t));
-                }
-                let mut loaded = loadings.clone();
-                als.update_loadings(loaded.as_mut(), &motion);
-                let mut sums_of_all = [0.0; 2];
-                for sensor in 0..9 {
-                    let mut sums = (Mat::zeros(k, k), Mat::zeros(k, 1));
-                    (0..samples).for_each(|t| {
-                        add(&mut sums, &row(&motion, t), informative(t, sensor), values[(t, sensor)]);
-                    });
-                    is_solved(&sums, row(&loaded, sensor));
-                }
-                for t in 0..samples {
-                    let own: Vec<usize> = (0..9).filter(|sensor| informative(t, *sensor)).collect();
-                    sums_of_all[0] +=
-                        own.iter().map(|&at| (values[(t, at)] - predicted(t, at)).powi(2)).sum::<f64>();
-                    sums_of_all[1] += f64::max(0.0, own.len() as f64 - k as f64);
-                }
-                let found = als.residual(loadings.as_ref(), &motion);
-                let is_near = |a: f64, b: f64| (a - b / samples as f64).abs() < 1e-12 * (1.0 + b);
-                assert!(
-                    is_near(found[0], sums_of_all[0]) && is_near(found[1], sums_of_all[1]),
-                    "{samples} {k} {signed}"
-                );
-            }
-        }
-    }
-}
+mod tests;

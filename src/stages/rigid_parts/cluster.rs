@@ -5,86 +5,291 @@
 //! are the likelihood of probabilistic principal components (Tipping and Bishop 1999). Each loading takes ½ ln n over n, for n
 //! samples (Schwarz 1978). Clusters of one part share components, so that their union is shorter than both.
 
-use super::factorisation::Fit;
-use super::roots::Roots;
+use faer::Mat;
+
+use super::als::Als;
+use super::factorisation::MAX_RANK;
+use super::roots::{Roots, product};
 use super::stratified::stratified;
 use crate::numerics::eigen::largest;
 
 /// Sensors of a cluster that its motion is learned from, spread over all.
-pub(super) const MAX_SENSORS: usize = 64;
-/// Tolerance, as a share of a sensor's mean square: more residual variance is encoded as noise is, and less costs little.
-pub(super) const TOLERANCE: f64 = 0.01;
-/// How many higher ranks in a row must be longer so that none higher is tried: one may have had a bad start.
-const PATIENCE: usize = 2;
+const MAX_SENSORS: usize = 48;
+/// Iterations in which the motion of a cluster is learned, and more where it is in doubt whether one motion explains it.
+const ITERATIONS: usize = 8;
+const MORE_ITERATIONS: usize = 24;
+/// Iterations in which c of other sensors is found from given w.
+const LOADING_ITERATIONS: usize = 2;
+/// Weight of a completed root, in both: so small that it decides only where informative roots do not.
+const WEIGHTS: [f64; 2] = [3e-3, 3e-4];
+/// Momentum of these iterations: the least and the largest, and its factors while the residual falls and when it grew.
+const MOMENTUM: [f64; 2] = [0.5, 0.98];
+const PACE: [f64; 2] = [1.1, 0.5];
+/// How many times the tolerance the variance of a component is at least.
+const PRESENT: f64 = 20.0;
+
+/// What some sensors of a body felt, and what completes it.
+pub(super) struct Felt {
+    /// Scaled by sensor and by sample.
+    pub roots: Roots,
+    /// Samples × sensors: the roots where they are felt, and elsewhere what completes them.
+    pub completed: Mat<f64>,
+    /// Residual variance that is encoded as noise is.
+    pub tolerance: f64,
+}
 
 /// A cluster of sensors.
+#[derive(Clone)]
 pub(super) struct Cluster {
     /// In ascending order.
     pub sensors: Vec<usize>,
     /// Those that the motion is learned from.
     pub representatives: Vec<usize>,
-    /// Their motion.
-    pub fit: Fit,
+    /// c of these, sensors × k.
+    loadings: Mat<f64>,
+    /// w, samples × k.
+    pub motion: Mat<f64>,
+    /// Their roots where they are felt, and elsewhere what completes them: samples × sensors.
+    completed: Mat<f64>,
+    /// Variances of the components, descending: the sum of the sensors' variances along each.
+    pub components: Vec<f64>,
+    /// Residual sum of squares of the informative roots, on average over samples.
+    residual: f64,
+    /// Degrees of freedom of that residual: informative roots beyond the k that w takes, on average over samples.
+    pub freedom: f64,
     /// Description length per sample, in nats; see the head of this file.
     pub description_length: f64,
+    /// Whether its motion was learned in more iterations.
+    is_learned: bool,
 }
 
 impl Cluster {
-    /// Learns the motion of sensors in so many iterations, with the rank, of `least` and more, of the shortest description.
-    pub(super) fn new(roots: &Roots, sensors: Vec<usize>, least: usize, iterations: usize) -> Self {
+    /// Learns the motion of sensors, with the rank of the shortest description.
+    pub(super) fn new(felt: &Felt, sensors: Vec<usize>) -> Self {
+        let mut best = Self::of_rank(felt, sensors, MAX_RANK);
+        loop {
+            let present = best.present(felt.tolerance);
+            if present == 0 || present >= best.rank() {
+                return best;
+            }
+            let less = Self::of_rank(felt, best.sensors.clone(), present);
+            if less.description_length >= best.description_length {
+                return best;
+            }
+            best = less;
+        }
+    }
+
+    /// Learns the motion of sensors with this rank, or as much as so many sensors have.
+    pub(super) fn of_rank(felt: &Felt, mut sensors: Vec<usize>, rank: usize) -> Self {
+        sensors.sort_unstable();
         let representatives: Vec<usize> =
             stratified(sensors.len(), MAX_SENSORS).map(|at| sensors[at]).collect();
-        let own = roots.select(&representatives);
-        let start = own.start();
-        let most = start.max_rank();
-        let with_rank = |k: usize| {
-            let fit = own.fit(&start, k, iterations);
-            (description_length(&fit, sensors.len()), fit)
+        let rank = rank.min(representatives.len().saturating_sub(1)).max(1);
+        let completed = columns(&felt.completed, &representatives);
+        let loadings = principal_axes(&completed, rank);
+        let motion = product(completed.as_ref(), loadings.as_ref());
+        let mut cluster = Self {
+            sensors,
+            representatives,
+            loadings,
+            motion,
+            completed,
+            components: Vec::new(),
+            residual: 0.0,
+            freedom: 0.0,
+            description_length: 0.0,
+            is_learned: false,
         };
-        // The length falls with the rank, and then rises.
-        let mut best = with_rank(least.min(most));
-        let mut longer = 0;
-        for k in best.1.rank() + 1..=most {
-            let next = with_rank(k);
-            if next.0 < best.0 {
-                (best, longer) = (next, 0);
-            } else {
-                longer += 1;
-            }
-            if longer == PATIENCE {
-                break;
-            }
-        }
-        let (description_length, fit) = best;
-        Self { sensors, representatives, fit, description_length }
+        cluster.learn(felt, ITERATIONS, WEIGHTS[0]);
+        cluster
     }
 
     /// The union of two clusters.
-    pub(super) fn union(roots: &Roots, a: &Self, b: &Self, iterations: usize) -> Self {
-        let mut sensors = [a.sensors.as_slice(), &b.sensors].concat();
-        sensors.sort_unstable();
-        // Iterations from the motions of both would end near these. That is no better than from the start, and merges seed
-        // clusters of different parts.
-        Self::new(roots, sensors, a.fit.rank().max(b.fit.rank()), iterations)
+    pub(super) fn union(felt: &Felt, a: &Self, b: &Self) -> Self {
+        Self::new(felt, [a.sensors.as_slice(), &b.sensors].concat())
     }
 
-    /// Whether the residual variance is more than `most`, so that one motion does not explain what the sensors feel.
-    pub(super) fn is_mixed(&self, most: f64) -> bool {
-        self.fit.residual > most * self.fit.freedom
+    /// Learns the motion in more iterations, and with lower ranks, as long as the description gets shorter.
+    pub(super) fn learn_well(&mut self, felt: &Felt) {
+        self.learn_more(felt);
+        while self.rank() > 1 {
+            let mut less = Self::of_rank(felt, self.sensors.clone(), self.rank() - 1);
+            less.learn_more(felt);
+            if less.description_length >= self.description_length {
+                break;
+            }
+            *self = less;
+        }
+    }
+
+    /// Learns the motion in more iterations.
+    pub(super) fn learn_more(&mut self, felt: &Felt) {
+        if !self.is_learned || self.variance() > felt.tolerance {
+            self.learn(felt, MORE_ITERATIONS, WEIGHTS[1]);
+            self.is_learned = true;
+        }
+    }
+
+    /// c of the representatives, sensors × k.
+    pub(super) fn loadings(&self) -> &Mat<f64> {
+        &self.loadings
+    }
+
+    /// k, the rank of the motion subspace.
+    pub(super) fn rank(&self) -> usize {
+        self.loadings.ncols()
+    }
+
+    /// How many components are more than residual.
+    pub(super) fn present(&self, tolerance: f64) -> usize {
+        self.components.iter().filter(|variance| **variance > PRESENT * tolerance).count()
+    }
+
+    /// Residual variance of an informative root.
+    pub(super) fn variance(&self) -> f64 {
+        self.residual / self.freedom.max(0.1)
+    }
+
+    /// Replaces what completes the roots of these sensors by what this motion gives.
+    pub(super) fn complete(&self, felt: &mut Felt) {
+        for (at, &sensor) in self.representatives.iter().enumerate() {
+            felt.completed.col_mut(sensor).copy_from(self.completed.col(at));
+        }
+    }
+
+    /// Residual variance of the informative roots of each sensor by this motion.
+    pub(super) fn residuals(&self, felt: &Felt) -> Vec<f64> {
+        let squares = product(self.motion.transpose(), self.motion.as_ref());
+        let products = product(felt.completed.transpose(), self.motion.as_ref());
+        let mut loadings = solved(&squares, &products);
+        let als = Als::new(felt.roots.values.as_ref(), &felt.roots.thresholds);
+        let with_completed = Als::new(felt.roots.values.as_ref(), &felt.roots.thresholds)
+            .with_completed(felt.completed.as_ref(), WEIGHTS[0]);
+        for _ in 0..LOADING_ITERATIONS {
+            with_completed.update_loadings(loadings.as_mut(), &self.motion);
+        }
+        // One more, so that there is a variance of none.
+        als.residuals(loadings.as_ref(), &self.motion)
+            .into_iter()
+            .map(|[sum, count]| sum / (count + 1.0))
+            .collect()
+    }
+
+    /// The residual of each of any sensors at the same samples: the share of its sum of squares that this motion leaves unexplained, 1 if
+    /// it feels nothing.
+    pub(super) fn shares(&self, roots: &Roots) -> Vec<f64> {
+        let als = Als::new(roots.values.as_ref(), &roots.thresholds);
+        let mut loadings = Mat::zeros(roots.sensors(), self.rank());
+        for _ in 0..2 * LOADING_ITERATIONS {
+            als.update_loadings(loadings.as_mut(), &self.motion);
+        }
+        let residuals = als.residuals(loadings.as_ref(), &self.motion);
+        let share = |(sensor, [residual, _]): (usize, [f64; 2])| {
+            let both = roots.values.col_as_slice(sensor).iter().zip(&roots.thresholds);
+            let all: f64 = both.filter(|(root, least)| root >= least).map(|(root, _)| root * root).sum();
+            if all > 0.0 { residual / all } else { 1.0 }
+        };
+        residuals.into_iter().enumerate().map(share).collect()
+    }
+
+    /// Alternates least squares with momentum, which is lost when the residual grows.
+    fn learn(&mut self, felt: &Felt, iterations: usize, weight: f64) {
+        let own = felt.roots.select_as_they_are(&self.representatives);
+        let (values, thresholds) = (own.values.as_ref(), &own.thresholds);
+        let plain = Als::new(values, thresholds);
+        let Self { loadings, motion, completed, .. } = self;
+        Als::new(values, thresholds)
+            .with_completed(completed.as_ref(), weight)
+            .update_motion(loadings.as_ref(), motion);
+        let mut last = loadings.clone();
+        let (mut momentum, mut before) = (MOMENTUM[0], f64::INFINITY);
+        for iteration in 0..iterations {
+            let als = Als::new(values, thresholds).with_completed(completed.as_ref(), weight);
+            let mut next = loadings.clone();
+            als.update_loadings(next.as_mut(), motion);
+            let [residual, _] = plain.residual(next.as_ref(), motion);
+            let mut step = 0.0;
+            if residual > before {
+                momentum = f64::max(MOMENTUM[0], momentum * PACE[1]);
+            } else {
+                momentum = f64::min(MOMENTUM[1], momentum * PACE[0]);
+                step = if iteration == 0 { 0.0 } else { momentum };
+            }
+            before = residual;
+            *loadings = Mat::from_fn(next.nrows(), next.ncols(), |i, j| {
+                next[(i, j)] + step * (next[(i, j)] - last[(i, j)])
+            });
+            last = next;
+            als.update_motion(loadings.as_ref(), motion);
+            complete(completed, &own, loadings, motion);
+        }
+        let [residual, freedom] = plain.residual(loadings.as_ref(), motion);
+        let components = components(loadings, motion);
+        (self.residual, self.freedom, self.components) = (residual, freedom, components);
+        self.description_length = self.description_length(felt.tolerance);
+    }
+
+    fn description_length(&self, tolerance: f64) -> f64 {
+        let (sensors, samples) = (self.sensors.len() as f64, self.motion.nrows() as f64);
+        // The motion may be learned from a share of the sensors only.
+        let ratio = sensors / self.representatives.len() as f64;
+        let motion: f64 = self.components.iter().map(|variance| (ratio * variance / tolerance).ln_1p()).sum();
+        let residual =
+            if self.freedom > 0.0 { (self.residual / self.freedom / tolerance).ln_1p() } else { 0.0 };
+        let loadings = sensors * self.rank() as f64 * samples.ln() / samples;
+        0.5 * (motion + ratio * self.freedom * residual + loadings)
     }
 }
 
-/// Description length per sample, in nats, of a cluster of so many sensors; see the head of this file.
-fn description_length(fit: &Fit, sensors: usize) -> f64 {
-    let samples = fit.samples() as f64;
-    let k = fit.rank() as f64;
-    // The fit may be of a share of the sensors only.
-    let ratio = sensors as f64 / fit.sensors() as f64;
-    // Half of the sensors feel a motion, the others its opposite; with signs, all feel it, which adds a constant.
-    let scale = ratio / (2.0 * samples * TOLERANCE);
-    let variances =
-        largest(fit.scatter().as_ref(), fit.rank()).map_or_else(|_| Vec::new(), |eigen| eigen.values);
-    let motion: f64 = variances.iter().map(|variance| (scale * variance).max(0.0).ln_1p()).sum();
-    let residual = if fit.freedom > 0.0 { (fit.residual / fit.freedom / TOLERANCE).ln_1p() } else { 0.0 };
-    0.5 * (motion + ratio * fit.freedom * residual + sensors as f64 * k * samples.ln() / samples)
+/// Replaces what completes roots by the velocity that is predicted, which is no more than the root.
+fn complete(completed: &mut Mat<f64>, roots: &Roots, loadings: &Mat<f64>, motion: &Mat<f64>) {
+    let predicted = product(motion.as_ref(), loadings.transpose());
+    for sensor in 0..completed.ncols() {
+        let both = predicted.col_as_slice(sensor).iter().zip(roots.values.col_as_slice(sensor));
+        for ((completed, (predicted, root)), least) in
+            completed.col_as_slice_mut(sensor).iter_mut().zip(both).zip(&roots.thresholds)
+        {
+            if root < least {
+                *completed = predicted.min(*root);
+            }
+        }
+    }
+}
+
+/// Variances along the principal axes of c wᵀ.
+fn components(loadings: &Mat<f64>, motion: &Mat<f64>) -> Vec<f64> {
+    let k = loadings.ncols();
+    let own = product(loadings.transpose(), loadings.as_ref());
+    let Ok(eigen) = largest(own.as_ref(), k) else { return Vec::new() };
+    let half = Mat::from_fn(k, k, |row, at| eigen.vectors[(row, at)] * eigen.values[at].max(0.0).sqrt());
+    let scatter = product(motion.transpose(), motion.as_ref());
+    let both = product(product(half.transpose(), scatter.as_ref()).as_ref(), half.as_ref());
+    let both = Mat::from_fn(k, k, |i, j| both[(i.max(j), i.min(j))] / motion.nrows() as f64);
+    largest(both.as_ref(), k)
+        .map_or_else(|_| Vec::new(), |eigen| eigen.values.iter().map(|value| value.max(0.0)).collect())
+}
+
+/// The first principal axes of some columns.
+fn principal_axes(columns: &Mat<f64>, count: usize) -> Mat<f64> {
+    let squares = product(columns.transpose(), columns.as_ref());
+    largest(squares.as_ref(), count)
+        .map_or_else(|_| Mat::identity(squares.nrows(), count), |eigen| eigen.vectors)
+}
+
+/// X of X A = B for a symmetric A, k × k, with a ridge.
+fn solved(squares: &Mat<f64>, products: &Mat<f64>) -> Mat<f64> {
+    /// As a share of the mean square.
+    const RIDGE: f64 = 1e-7;
+    let k = squares.nrows();
+    let trace: f64 = (0..k).map(|at| squares[(at, at)]).sum();
+    let ridge = RIDGE * trace / k as f64 + f64::MIN_POSITIVE;
+    let matrix = nalgebra::DMatrix::from_fn(k, k, |i, j| squares[(i, j)] + if i == j { ridge } else { 0.0 });
+    let Some(factor) = matrix.cholesky() else { return Mat::zeros(products.nrows(), k) };
+    let inverse = factor.inverse();
+    product(products.as_ref(), Mat::from_fn(k, k, |i, j| inverse[(i, j)]).as_ref())
+}
+
+fn columns(matrix: &Mat<f64>, which: &[usize]) -> Mat<f64> {
+    Mat::from_fn(matrix.nrows(), which.len(), |row, at| matrix[(row, which[at])])
 }

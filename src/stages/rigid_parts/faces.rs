@@ -59,7 +59,7 @@ fn linked(roots: &Roots, sensors: &[usize], is_linked: impl Fn(f64) -> bool) -> 
 }
 
 /// The connected components of 0, …, n − 1, each rising, in the order of their first.
-pub(super) fn connected_components(n: usize, is_linked: impl Fn(usize, usize) -> bool) -> Vec<Vec<usize>> {
+fn connected_components(n: usize, is_linked: impl Fn(usize, usize) -> bool) -> Vec<Vec<usize>> {
     let mut left: Vec<usize> = (0..n).collect();
     let mut found = Vec::new();
     while !left.is_empty() {

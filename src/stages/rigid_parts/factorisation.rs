@@ -8,7 +8,6 @@
 //! which does not matter.
 
 use faer::Mat;
-use rayon::prelude::*;
 
 use super::als::Als;
 use super::roots::{Roots, product};
@@ -16,12 +15,10 @@ use crate::numerics::eigen::largest;
 
 /// Largest rank of a motion subspace: velocity and angular velocity of a rigid body are six numbers.
 pub(crate) const MAX_RANK: usize = 6;
-/// Iterations in which c is found from given w, or w from given c: each updates which roots are informative.
+/// Iterations in which w is found from given c: each updates which roots are informative.
 const ITERATIONS: usize = 4;
 /// Share of the largest eigenvalue of cᵀ c from which on an axis counts as spanned.
 const SPANNED: f64 = 1e-12;
-/// Sensors whose residuals one thread finds at once.
-const SENSORS: usize = 64;
 
 /// c of some sensors and w at some samples, up to six components by descending variance: where the iterations start.
 pub(crate) struct Start {
@@ -37,10 +34,6 @@ pub(crate) struct Fit {
     loadings: Mat<f64>,
     /// Samples × k.
     motion: Mat<f64>,
-    /// Residual sum of squares of the informative roots, on average over samples.
-    pub residual: f64,
-    /// Degrees of freedom of that residual: informative roots beyond the k that w takes, on average over samples.
-    pub freedom: f64,
 }
 
 impl Start {
@@ -51,24 +44,9 @@ impl Start {
 }
 
 impl Fit {
-    /// k, the rank of the motion subspace.
-    pub(crate) fn rank(&self) -> usize {
-        self.loadings.ncols()
-    }
-
-    /// Number of sensors.
-    pub(crate) fn sensors(&self) -> usize {
-        self.loadings.nrows()
-    }
-
-    /// Number of samples.
-    pub(crate) fn samples(&self) -> usize {
-        self.motion.nrows()
-    }
-
-    /// The sum of w wᵀ over samples, k × k.
-    pub(crate) fn scatter(&self) -> Mat<f64> {
-        product(self.motion.transpose(), self.motion.as_ref())
+    /// c, sensors × k; the columns are orthonormal.
+    pub(crate) fn loadings(&self) -> &Mat<f64> {
+        &self.loadings
     }
 }
 
@@ -92,8 +70,7 @@ impl Roots {
             orthonormalise(&mut loadings, &mut motion);
         }
         als.update_motion(loadings.as_ref(), &mut motion);
-        let [residual, freedom] = als.residual(loadings.as_ref(), &motion);
-        Fit { residual, freedom, loadings, motion }
+        Fit { loadings, motion }
     }
 
     /// Residual sum of squares of a fit over all roots, as a share of their sum of squares.
@@ -119,47 +96,13 @@ impl Roots {
         if self.signed { prediction } else { prediction.max(0.0) }
     }
 
-    /// w at all samples from given c, of a fit to the same sensors at other samples: T × k, by sample.
-    pub(crate) fn motion(&self, fit: &Fit) -> Vec<f64> {
-        let k = fit.rank();
+    /// w at all samples from given c of these sensors, sensors × k: T × k, by sample.
+    pub(super) fn motion(&self, loadings: &Mat<f64>) -> Vec<f64> {
+        let k = loadings.ncols();
         let mut motion = Mat::zeros(self.samples(), k);
         let als = Als::new(self.values.as_ref(), &self.thresholds);
-        (0..ITERATIONS).for_each(|_| als.update_motion(fit.loadings.as_ref(), &mut motion));
+        (0..ITERATIONS).for_each(|_| als.update_motion(loadings.as_ref(), &mut motion));
         (0..self.samples()).flat_map(|t| (0..k).map(move |at| (t, at))).map(|at| motion[at]).collect()
-    }
-
-    /// The best c of each sensor for w of a fit to any sensors at these samples: sensors × k.
-    pub(crate) fn loadings(&self, fit: &Fit) -> Mat<f64> {
-        self.some_loadings(fit, 0, self.sensors())
-    }
-
-    /// The same of so many sensors from one on.
-    fn some_loadings(&self, fit: &Fit, first: usize, count: usize) -> Mat<f64> {
-        let mut loadings = Mat::zeros(count, fit.rank());
-        let als = Als::new(self.values.subcols(first, count), &self.thresholds);
-        (0..ITERATIONS).for_each(|_| als.update_loadings(loadings.as_mut(), &fit.motion));
-        loadings
-    }
-
-    /// Residual variance of each sensor with its best c, as a share of its mean square, for w of a fit to any sensors at these
-    /// samples; 1 if it feels nothing.
-    pub(crate) fn residuals(&self, fit: &Fit) -> Vec<f64> {
-        let firsts: Vec<usize> = (0..self.sensors()).step_by(SENSORS).collect();
-        let residuals = |sensor: usize| {
-            let count = SENSORS.min(self.sensors() - sensor);
-            let loadings = self.some_loadings(fit, sensor, count);
-            let predictions = product(fit.motion.as_ref(), loadings.transpose());
-            let share = |at: usize| {
-                let roots = self.values.col_as_slice(sensor + at);
-                let all: f64 = roots.iter().map(|root| root * root).sum();
-                let both = roots.iter().zip(predictions.col_as_slice(at));
-                let residual: f64 =
-                    both.map(|(root, prediction)| (root - self.censored(*prediction)).powi(2)).sum();
-                if all > 0.0 { residual / all } else { 1.0 }
-            };
-            (0..count).map(share).collect::<Vec<f64>>()
-        };
-        firsts.into_par_iter().flat_map(residuals).collect()
     }
 }
 
@@ -170,7 +113,7 @@ fn principal_axes(squares: &Mat<f64>) -> Mat<f64> {
 }
 
 /// Makes the columns of c orthonormal along its principal axes, and rotates w with it.
-fn orthonormalise(loadings: &mut Mat<f64>, motion: &mut Mat<f64>) {
+pub(super) fn orthonormalise(loadings: &mut Mat<f64>, motion: &mut Mat<f64>) {
     let squares = product(loadings.transpose(), loadings.as_ref());
     let Ok(eigen) = largest(squares.as_ref(), loadings.ncols()) else { return };
     let least = SPANNED * eigen.values[0];

@@ -1,36 +1,34 @@
 //! `rigid_parts`: find which sensors move rigidly together, by subspace clustering (an extension; not in the paper).
 //!
-//! In: [`Tactile`](super::sense::Tactile) pressures of M sensors at T samples, and [`Distances`](super::distance::Distances)
-//! between sensors. Out: [`RigidParts`], the part of each sensor; the number of parts is estimated, too.
+//! In: [`Tactile`](super::sense::Tactile) pressures of M sensors at T samples. Out: [`RigidParts`], the part of each sensor; the
+//! number of parts is estimated, too.
 //!
 //! Velocity and angular velocity of a rigid part are six numbers. So the roots of the pressures on its sensors span a motion
-//! subspace of rank six or less, where they are not censored at 0. That is motion segmentation (Costeira and Kanade 1998),
-//! here by K-subspaces (Bradley and Mangasarian 2000) and merging by description length (Ma et al. 2007). `docs/estimate.md`
-//! has the theory; the stage [`joints`](super::joints) continues with the result.
+//! subspace of rank six or less, where they are not censored at 0. That is motion segmentation (Costeira and Kanade 1998). The
+//! censored matrix is completed first (Saul 2022); affinities between sensors follow from its right singular vectors; and
+//! clusters of high affinity are merged by description length (Ma et al. 2007) and refined by K-subspaces (Bradley and
+//! Mangasarian 2000). `docs/estimate.md` has the theory; the stage [`joints`](super::joints) continues with the result.
 
 mod als;
 mod cluster;
+mod completion;
 mod faces;
 mod factorisation;
 #[cfg(test)]
 pub(crate) mod fixtures;
 mod medians;
-mod observations;
 mod parts;
 mod regressions;
 mod roots;
 mod search;
-mod split;
-mod starts;
 mod stratified;
 mod subspace;
-mod unassigned;
 
 pub(crate) use self::faces::{opposite_pairs, similar};
 pub(crate) use self::factorisation::MAX_RANK;
 pub(crate) use self::medians::{outlier_limit, typical_size};
 pub use self::parts::{RigidParts, rigid_parts};
 pub(crate) use self::roots::{Roots, is_signed};
-pub use self::starts::MIN_SENSORS;
+pub use self::search::MIN_SENSORS;
 pub(crate) use self::stratified::stratified;
 pub(crate) use self::subspace::MotionSubspace;

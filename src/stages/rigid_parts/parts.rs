@@ -1,21 +1,31 @@
 //! Estimate the parts of a body: which sensors move rigidly together, and how many parts there are.
 //!
-//! Neighbouring sensors form seed clusters, which are merged into clusters of one motion each, from [several
-//! starts](super::starts). Clusters that one motion does not explain are [split](super::split). At last, clusters that share
-//! nothing with the rest of a part, such as the ends of cylinders, stay [unassigned](RigidParts::unassigned).
+//! Censored roots are [completed](super::completion), and clusters of one motion each are [searched](super::search) for. At last, a
+//! sensor that the search left out goes to the part that explains it much better than any other. Those that no part explains, such
+//! as the ends of cylinders, stay [unassigned](RigidParts::unassigned).
 
 use std::collections::BTreeMap;
 
+use faer::Mat;
 use rayon::prelude::*;
 
-use super::cluster::Cluster;
-use super::observations::Observations;
+use super::cluster::{Cluster, Felt};
+use super::completion::Completion;
+use super::faces::similar;
+use super::medians::typical_size;
 use super::roots::{Roots, is_signed};
-use super::search::{ITERATIONS, Search, members, smallest};
-use super::starts::SEED_SIZES;
+use super::search::Search;
+use super::stratified::stratified;
+use super::subspace::{MotionSubspace, ROTATION_RANK};
 use crate::numerics::partition::named_by_appearance;
-use crate::stages::distance::Distances;
 use crate::stages::sense::Tactile;
+
+/// Samples that parts are searched on, spread over all at which anything is felt.
+const MAX_SAMPLES: usize = 1500;
+/// Degrees of freedom of its residual that a part must have per sample. With fewer, any sensors fit.
+const MIN_FREEDOM: f64 = 1.0;
+/// Residual of a sensor by a part, as a share of that by any other, up to which it is on that part.
+const BETTER: f64 = 0.2;
 
 /// The part of each of M sensors, and how well its motion explains what the sensor feels.
 ///
@@ -25,65 +35,111 @@ use crate::stages::sense::Tactile;
 pub struct RigidParts {
     /// The part of each sensor, 0, 1, … in order of appearance.
     pub labels: Vec<usize>,
-    /// The residual of each sensor, by the motion of the cluster that it came to its part with.
+    /// The residual of each sensor by the motion of its part; 0 for one that is or was unassigned.
     pub residuals: Vec<f64>,
     /// For each sensor, the other parts and its residual by their motions, the smallest first.
     pub alternatives: Vec<Vec<(usize, f64)>>,
     /// Labels of clusters that feel too little to be parts: they are on other parts, but their motion does not say on which. The
     /// joints do, and [`estimate`](crate::estimate::estimate) leaves none.
     pub unassigned: Vec<usize>,
+    /// The motion of each part at all T samples, by its label.
+    pub(crate) motions: BTreeMap<usize, MotionSubspace>,
 }
 
 /// Estimates the parts.
 ///
-/// In: M × T pressures, finite and of any sign, of sensors that all change; and the distances between `sensors`, at least
+/// In: M × T pressures, finite and of any sign, of sensors that all change; and `sensors`, at least
 /// [`MIN_SENSORS`](super::MIN_SENSORS) of them, rising and spread over all. The motions of parts are learned from these; the other
 /// sensors are assigned to the part with the smallest residual. Out: the part of all M sensors. No random numbers are drawn, and
 /// the number of threads changes no bit.
 ///
 /// # Panics
-/// If `sensors` is empty or names a sensor beyond M, `distances` is of fewer sensors, or T is 0.
-pub fn rigid_parts(tactile: &Tactile, sensors: &[usize], distances: &Distances) -> RigidParts {
+/// If `sensors` is empty or names a sensor beyond M, or T is 0.
+pub fn rigid_parts(tactile: &Tactile, sensors: &[usize]) -> RigidParts {
     let signed = is_signed(tactile);
     let all: Vec<&[f32]> = tactile.series().collect();
     let some: Vec<&[f32]> = sensors.iter().map(|&sensor| all[sensor]).collect();
-    let observations = Observations { series: some, signed, distances };
-    let every: Vec<usize> = (0..sensors.len()).collect();
-    let samples = observations.informative_samples(&every);
-    let found = observations.clustered(&every, &samples, &SEED_SIZES);
-    let labels = observations.split(found.clone());
-    let fine =
-        Search { roots: observations.roots(&every, &samples[1]), distances, iterations: ITERATIONS[1] };
-    let clusters = fine.clusters(members(&labels), Vec::new());
-    let clusters = if labels == found { clusters } else { fine.assigned(clusters, true) };
-    let (parts, unassigned) = fine.parts_and_unassigned(clusters);
-    of_all(&parts, &unassigned, &Roots::at(&all, &samples[1], signed).normalised())
-}
-
-/// Assigns all sensors to the cluster with the smallest residual.
-fn of_all(parts: &[Cluster], unassigned: &[Cluster], all: &Roots) -> RigidParts {
-    let clusters: Vec<&Cluster> = parts.iter().chain(unassigned).collect();
-    let residuals: Vec<Vec<f64>> = clusters.par_iter().map(|cluster| all.residuals(&cluster.fit)).collect();
-    let best = |sensor: usize| {
-        smallest(residuals.iter().map(|residuals| residuals[sensor])).expect("there are clusters")
-    };
-    let own: Vec<(usize, f64)> = (0..all.sensors()).map(best).collect();
-    let found: Vec<usize> = own.iter().map(|(cluster, _)| *cluster).collect();
-    let labels = named_by_appearance(&found);
-    let names: BTreeMap<usize, usize> = found.iter().copied().zip(labels.iter().copied()).collect();
+    let samples = felt_samples(&some, MAX_SAMPLES);
+    let roots = Roots::at(&some, &samples, signed).normalised();
+    let sizes = roots.sizes();
+    let roots = roots.equalised(&sizes);
+    let completion = Completion::new(&roots);
+    let felt = Felt { roots, completed: completion.velocities, tolerance: 0.0 };
+    let mut search = Search::new(felt, completion.affinities);
+    let mut parts = parts_of(search.clusters());
+    if parts.is_empty() {
+        parts.push(search.whole());
+    }
+    let mut labels: Vec<Option<usize>> = vec![None; all.len()];
+    for (at, part) in parts.iter().enumerate() {
+        part.sensors.iter().for_each(|&sensor| labels[sensors[sensor]] = Some(at));
+    }
+    let every = Roots::at(&all, &samples, signed).normalised().equalised(&sizes);
+    let residuals: Vec<Vec<f64>> = parts.par_iter().map(|part| part.shares(&every)).collect();
+    for (sensor, label) in labels.iter_mut().enumerate() {
+        *label = label.or_else(|| explaining(&residuals, sensor, search.most_residual()));
+    }
+    let rest: Vec<usize> = (0..all.len()).filter(|&sensor| labels[sensor].is_none()).collect();
+    let groups = similar(&every, &rest);
+    for (at, group) in groups.iter().enumerate() {
+        group.iter().for_each(|&sensor| labels[sensor] = Some(parts.len() + at));
+    }
+    let labels: Vec<usize> = labels.into_iter().map(|label| label.expect("it is in a group")).collect();
+    let named = named_by_appearance(&labels);
+    let names: BTreeMap<usize, usize> = labels.iter().copied().zip(named.iter().copied()).collect();
     let alternatives = |sensor: usize| {
-        let named = (0..parts.len()).filter(|part| *part != found[sensor] && names.contains_key(part));
+        let others = (0..parts.len()).filter(|part| *part != labels[sensor]);
         let mut others: Vec<(usize, f64)> =
-            named.map(|part| (names[&part], residuals[part][sensor])).collect();
+            others.map(|part| (names[&part], residuals[part][sensor])).collect();
         others.sort_by(|a, b| a.1.total_cmp(&b.1));
         others
     };
+    let residual = |sensor: usize| residuals.get(labels[sensor]).map_or(0.0, |own| own[sensor]);
     RigidParts {
-        residuals: own.into_iter().map(|(_, residual)| residual).collect(),
-        alternatives: (0..all.sensors()).map(alternatives).collect(),
-        unassigned: (parts.len()..clusters.len()).filter_map(|at| names.get(&at).copied()).collect(),
-        labels,
+        residuals: (0..all.len()).map(residual).collect(),
+        alternatives: (0..all.len()).map(alternatives).collect(),
+        unassigned: (parts.len()..parts.len() + groups.len()).map(|at| names[&at]).collect(),
+        motions: parts
+            .iter()
+            .enumerate()
+            .map(|(at, part)| (names[&at], motion(part, &some, &samples, signed)))
+            .collect(),
+        labels: named,
     }
+}
+
+/// The clusters that are parts: those that feel how they rotate, and large ones.
+fn parts_of(clusters: Vec<Cluster>) -> Vec<Cluster> {
+    let small = typical_size(clusters.iter().map(|own| own.sensors.len()).collect()).div_ceil(2);
+    let is_part = |own: &Cluster| {
+        own.freedom >= MIN_FREEDOM && (own.rank() >= ROTATION_RANK || own.sensors.len() >= small)
+    };
+    clusters.into_iter().filter(is_part).collect()
+}
+
+/// The part whose motion explains a sensor best, if it leaves no more than this, or much less than that of any other does.
+fn explaining(residuals: &[Vec<f64>], sensor: usize, most: f64) -> Option<usize> {
+    let mut order: Vec<(f64, usize)> =
+        residuals.iter().enumerate().map(|(at, own)| (own[sensor], at)).collect();
+    order.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let next = order.get(1).map_or(f64::INFINITY, |next| next.0);
+    order.first().filter(|best| best.0 <= f64::max(most, BETTER * next)).map(|best| best.1)
+}
+
+/// The motion of a part at all samples, from what was learned at some.
+fn motion(part: &Cluster, series: &[&[f32]], samples: &[usize], signed: bool) -> MotionSubspace {
+    let series: Vec<&[f32]> = part.representatives.iter().map(|&sensor| series[sensor]).collect();
+    let scales = Roots::at(&series, samples, signed).scales();
+    let loadings = part.loadings();
+    let loadings = Mat::from_fn(loadings.nrows(), loadings.ncols(), |i, j| loadings[(i, j)] * scales[i]);
+    MotionSubspace::of_loadings(&series, loadings, signed)
+}
+
+/// At most so many samples, of those at which anything is felt.
+fn felt_samples(series: &[&[f32]], most: usize) -> Vec<usize> {
+    let samples = series[0].len();
+    let felt: Vec<usize> = (0..samples).filter(|t| series.iter().any(|series| series[*t] != 0.0)).collect();
+    stratified(felt.len(), most).map(|at| felt[at]).collect()
 }
 
 #[cfg(test)]

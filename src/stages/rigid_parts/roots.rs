@@ -59,14 +59,51 @@ impl Roots {
 
     /// Divided by the root mean square of each sensor, where it feels anything.
     pub(crate) fn normalised(mut self) -> Self {
-        for sensor in 0..self.sensors() {
-            let roots = self.values.col_as_slice_mut(sensor);
-            let scale = (roots.iter().map(|root| root * root).sum::<f64>() / roots.len() as f64).sqrt();
-            if scale > 0.0 {
-                roots.iter_mut().for_each(|root| *root /= scale);
-            }
+        for (sensor, scale) in self.scales().into_iter().enumerate().filter(|(_, scale)| *scale > 0.0) {
+            self.values.col_as_slice_mut(sensor).iter_mut().for_each(|root| *root /= scale);
         }
         Self::new(self.values, self.signed)
+    }
+
+    /// The root mean square of each sensor.
+    pub(super) fn scales(&self) -> Vec<f64> {
+        let scale = |sensor| {
+            let roots = self.values.col_as_slice(sensor);
+            (roots.iter().map(|root| root * root).sum::<f64>() / roots.len() as f64).sqrt()
+        };
+        (0..self.sensors()).map(scale).collect()
+    }
+
+    /// The root mean square of the roots at each sample, but no less than a tenth of the median.
+    pub(super) fn sizes(&self) -> Vec<f64> {
+        /// Of the median.
+        const LEAST: f64 = 0.1;
+        let mut sizes = vec![0.0; self.samples()];
+        for sensor in 0..self.sensors() {
+            let roots = self.values.col_as_slice(sensor);
+            sizes.iter_mut().zip(roots).for_each(|(size, root)| *size += root * root);
+        }
+        sizes.iter_mut().for_each(|size| *size = (*size / self.sensors() as f64).sqrt());
+        let mut order = sizes.clone();
+        order.sort_by(f64::total_cmp);
+        let least = f64::max(f64::MIN_POSITIVE, LEAST * order[order.len() / 2]);
+        sizes.into_iter().map(|size| size.max(least)).collect()
+    }
+
+    /// Divided by the size at each sample. Every root above 0 counts as felt.
+    pub(super) fn equalised(mut self, sizes: &[f64]) -> Self {
+        for sensor in 0..self.sensors() {
+            let roots = self.values.col_as_slice_mut(sensor);
+            roots.iter_mut().zip(sizes).for_each(|(root, size)| *root /= size);
+        }
+        self.thresholds.fill(if self.signed { f64::NEG_INFINITY } else { f64::from(f32::MIN_POSITIVE) });
+        self
+    }
+
+    /// Of these sensors only, felt from the same thresholds on.
+    pub(super) fn select_as_they_are(&self, sensors: &[usize]) -> Self {
+        let values = columns(&self.values, sensors);
+        Self { values, thresholds: self.thresholds.clone(), signed: self.signed }
     }
 
     /// Averages over samples: of the products of two sensors' roots, sensors × sensors, and of each sensor's roots.

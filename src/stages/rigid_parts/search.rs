@@ -1,194 +1,260 @@
-//! Search for clusters: K-subspaces (Bradley and Mangasarian 2000), with agglomerative merging by description length (Ma et al.
-//! 2007).
-//!
-//! Two steps alternate. The pair of clusters that saves most description length is merged, again and again. Then each sensor is
-//! assigned to the cluster whose motion leaves it the smallest residual.
+//! Search for the parts: agglomerative merging of clusters by description length (Ma et al. 2007), and assigning sensors by
+//! residual (K-subspaces, Bradley and Mangasarian 2000), from small clusters of sensors of high affinity.
 
+use std::cmp::Reverse;
 use std::collections::BTreeMap;
 
+use faer::Mat;
+use kodama::Method;
 use rayon::prelude::*;
 
-use super::cluster::Cluster;
-use super::roots::Roots;
-use super::subspace::ROTATION_RANK;
-use crate::numerics::partition::named_by_appearance;
-use crate::stages::distance::Distances;
+use super::cluster::{Cluster, Felt};
+use super::factorisation::MAX_RANK;
+use crate::numerics::linkage::largest_clusters;
 
-/// Iterations in which the motion of a cluster is learned: of the many seed clusters, and of the few parts.
-pub(super) const ITERATIONS: [usize; 2] = [4, 16];
-/// Nats per sample that a merge of parts must save: it must show that they share a component.
-pub(super) const MIN_SAVING: f64 = 1.0;
-/// Degrees of freedom of its residual that a part must have per sample. With fewer, any sensors fit.
-pub(super) const MIN_FREEDOM: f64 = 1.0;
-/// Most iterations in which sensors are assigned.
-const MAX_ASSIGNMENTS: usize = 10;
-/// Most iterations of merging and assigning.
+/// Sensors of a seed cluster: the fewest, and the most. Others wait until clusters have grown.
+const SEED_SENSORS: [usize; 2] = [6, 16];
+/// Fewest sensors that several parts can be estimated from: two seed clusters.
+pub const MIN_SENSORS: usize = 2 * SEED_SENSORS[0];
+/// Least affinity of the sensors of a seed cluster, on average.
+const MIN_AFFINITY: f64 = 0.1;
+/// Share of the sensors of a cluster that each of two pieces has at most, which are tried apart.
+const PIECE: f64 = 0.6;
+/// Clusters of highest affinity that a cluster may merge with.
+const NEIGHBOURS: usize = 5;
+/// Nats per sample that a merge must save, and a cluster against two pieces of it.
+const MIN_SAVING: f64 = 0.3;
+/// Largest residual variance of a part, and of a seed cluster, in units of the tolerance.
+const EXPLAINED: f64 = 5.0;
+const MIXED: f64 = 10.0;
+/// The same of a sensor that is in no cluster. With noise it is more than any residual.
+const LEFT: f64 = 30.0;
+/// The tolerance, the residual variance that is encoded as noise is: the least, which is what the iterations leave, and the largest.
+const TOLERANCE: [f64; 2] = [3e-4, 5e-2];
+/// Fewest sensors of a cluster.
+const MIN_CLUSTER: usize = 4;
+/// Most iterations in which sensors are assigned, and of merging and assigning.
+const MAX_ASSIGNMENTS: usize = 3;
 const MAX_ALTERNATIONS: usize = 4;
 
 /// Sensors whose clusters are searched for.
-pub(super) struct Search<'a> {
-    /// Their roots.
-    pub roots: Roots,
-    /// Distances between them.
-    pub distances: &'a Distances,
-    /// Iterations in which the motion of a cluster is learned.
-    pub iterations: usize,
+pub(super) struct Search {
+    felt: Felt,
+    /// Affinities between sensors, sensors × sensors, 0 to 1.
+    affinities: Mat<f64>,
 }
 
-impl Search<'_> {
-    /// The cluster of these sensors.
-    pub(super) fn cluster(&self, sensors: Vec<usize>) -> Cluster {
-        Cluster::new(&self.roots, sensors, 1, self.iterations)
+impl Search {
+    /// Of sensors that felt this, and that have these affinities, sensors × sensors, 0 to 1.
+    pub(super) fn new(felt: Felt, affinities: Mat<f64>) -> Self {
+        Self { felt, affinities }
     }
 
-    /// Clusters of these members; those that are known are not learned again.
-    pub(super) fn clusters(&self, members: Vec<Vec<usize>>, known: Vec<Cluster>) -> Vec<Cluster> {
-        let mut known: BTreeMap<Vec<usize>, Cluster> =
-            known.into_iter().map(|cluster| (cluster.sensors.clone(), cluster)).collect();
-        let found: Vec<_> = members.into_iter().map(|own| (known.remove(&own), own)).collect();
-        found.into_par_iter().map(|(known, own)| known.unwrap_or_else(|| self.cluster(own))).collect()
-    }
-
-    /// Alternates merging, of each cluster with its `near` nearest, and assigning, until nothing changes.
-    pub(super) fn alternated(&self, mut clusters: Vec<Cluster>, near: usize) -> Vec<Cluster> {
+    /// The clusters, each of one motion. Sensors that no motion explains are in none.
+    pub(super) fn clusters(&mut self) -> Vec<Cluster> {
+        let every: Vec<usize> = (0..self.felt.roots.sensors()).collect();
+        let mut clusters = self.seed_clusters(&every);
+        let mut before = Vec::new();
         for _ in 0..MAX_ALTERNATIONS {
-            let before = labels_of(&clusters);
-            clusters = self.assigned(self.merged(clusters, near, MIN_SAVING, 0), true);
-            if labels_of(&clusters) == before {
+            clusters = self.merged(clusters);
+            clusters.par_iter_mut().for_each(|own| own.learn_well(&self.felt));
+            clusters = self.assigned(clusters, &every);
+            let count = clusters.len();
+            clusters = self.split(clusters);
+            if clusters.len() > count {
+                clusters = self.assigned(clusters, &every);
+            }
+            let now: Vec<Vec<usize>> = clusters.iter().map(|own| own.sensors.clone()).collect();
+            if now == before {
                 break;
             }
+            before = now;
         }
+        clusters.par_iter_mut().for_each(|own| own.learn_well(&self.felt));
         clusters
     }
 
-    /// Merges the pair of clusters that saves most, again and again, as long as it saves more than `margin` nats. Pairs are each
-    /// cluster and its `near` nearest; the first `fixed` clusters are not merged with each other.
-    pub(super) fn merged(
-        &self,
-        clusters: Vec<Cluster>,
-        near: usize,
-        margin: f64,
-        fixed: usize,
-    ) -> Vec<Cluster> {
+    /// The residual variance that is still explained, of a sensor that is in no cluster.
+    pub(super) fn most_residual(&self) -> f64 {
+        LEFT * self.felt.tolerance
+    }
+
+    /// All sensors as one cluster.
+    pub(super) fn whole(&self) -> Cluster {
+        Cluster::new(&self.felt, (0..self.felt.roots.sensors()).collect())
+    }
+
+    /// The seed clusters that one motion explains. What it leaves of most of them sets the tolerance.
+    fn seed_clusters(&mut self, sensors: &[usize]) -> Vec<Cluster> {
+        let seeds = self.seeds(sensors, SEED_SENSORS[1]);
+        self.felt.tolerance = TOLERANCE[0];
+        let variance = |own: &Vec<usize>| Cluster::of_rank(&self.felt, own.clone(), MAX_RANK).variance();
+        let variances: Vec<f64> = seeds.par_iter().map(variance).collect();
+        self.felt.tolerance = median(variances).clamp(TOLERANCE[0], TOLERANCE[1]);
+        let found: Vec<Cluster> = seeds.into_par_iter().map(|own| Cluster::new(&self.felt, own)).collect();
+        found.into_iter().filter(|own| own.variance() <= MIXED * self.felt.tolerance).collect()
+    }
+
+    /// Small clusters of some sensors, of at most so many, by average linkage on their affinities.
+    fn seeds(&self, sensors: &[usize], most: usize) -> Vec<Vec<usize>> {
+        let distance = |i: usize, j: usize| 1.0 - self.affinities[(sensors[i], sensors[j])];
+        let found = largest_clusters(sensors.len(), distance, Method::Average, most, 1.0 - MIN_AFFINITY);
+        found
+            .into_iter()
+            .filter(|own| own.len() >= SEED_SENSORS[0])
+            .map(|own| own.into_iter().map(|at| sensors[at]).collect())
+            .collect()
+    }
+
+    /// Merges the pair of clusters that saves most, again and again, as long as one motion explains the union, and both have
+    /// components in common.
+    fn merged(&mut self, clusters: Vec<Cluster>) -> Vec<Cluster> {
         let mut name = clusters.len();
         let mut clusters: BTreeMap<usize, Cluster> = clusters.into_iter().enumerate().collect();
-        let mut unions: BTreeMap<(usize, usize), Cluster> = BTreeMap::new();
+        // Those that are not one part are `None`.
+        let mut unions: BTreeMap<(usize, usize), Option<Cluster>> = BTreeMap::new();
         while clusters.len() > 1 {
-            let new: Vec<(usize, usize)> = self
-                .pairs(&clusters, near)
-                .into_iter()
-                .filter(|pair| pair.1 >= fixed && !unions.contains_key(pair))
-                .collect();
-            let made = new.into_par_iter().map(|(a, b)| {
-                ((a, b), Cluster::union(&self.roots, &clusters[&a], &clusters[&b], self.iterations))
-            });
-            unions.extend(made.collect::<Vec<_>>());
-            let saving = |(&(a, b), union): (&(usize, usize), &Cluster)| {
-                clusters[&a].description_length + clusters[&b].description_length - union.description_length
+            let pairs = self.pairs(&clusters);
+            let new = pairs.iter().copied().filter(|pair| !unions.contains_key(pair));
+            let new: Vec<(usize, usize)> = new.collect();
+            let union = |(a, b)| ((a, b), Some(Cluster::union(&self.felt, &clusters[&a], &clusters[&b])));
+            unions.extend(new.into_par_iter().map(union).collect::<Vec<_>>());
+            let saving = |(a, b): &(usize, usize)| {
+                let union = unions[&(*a, *b)].as_ref()?;
+                let both = clusters[a].description_length + clusters[b].description_length;
+                Some((both - union.description_length, (*a, *b)))
             };
-            let Some((most, pair)) = unions
-                .iter()
-                .map(|entry| (saving(entry), *entry.0))
-                .reduce(|best, other| if other.0 > best.0 { other } else { best })
-            else {
-                break;
-            };
-            if most <= margin {
-                break;
+            let best = pairs.iter().filter_map(saving);
+            let best = best.reduce(|best, other| if other.0 > best.0 { other } else { best });
+            let Some((_, (a, b))) = best.filter(|best| best.0 > MIN_SAVING) else { break };
+            let mut union = unions.remove(&(a, b)).flatten().expect("it is the best of these");
+            if !self.is_one(&clusters[&a], &clusters[&b], &mut union) {
+                unions.insert((a, b), None);
+                continue;
             }
-            let union = unions.remove(&pair).expect("it is the best of these");
-            unions.retain(|(a, b), _| ![pair.0, pair.1].iter().any(|gone| a == gone || b == gone));
-            clusters.retain(|name, _| *name != pair.0 && *name != pair.1);
-            if pair.0 < fixed {
-                clusters.insert(pair.0, union);
-            } else {
-                clusters.insert(name, union);
-                name += 1;
-            }
+            union.complete(&mut self.felt);
+            unions.retain(|(c, d), _| ![a, b].iter().any(|gone| c == gone || d == gone));
+            clusters.remove(&a);
+            clusters.remove(&b);
+            clusters.insert(name, union);
+            name += 1;
         }
         clusters.into_values().collect()
     }
 
-    /// Each cluster with its nearest ones, by average distance.
-    fn pairs(&self, clusters: &BTreeMap<usize, Cluster>, near: usize) -> Vec<(usize, usize)> {
-        let distance = |a: &Cluster, b: &Cluster| {
-            let sum: f64 = a
-                .sensors
-                .iter()
-                .flat_map(|&i| b.sensors.iter().map(move |&j| self.distances.get(i, j)))
-                .sum();
-            sum / (a.sensors.len() * b.sensors.len()) as f64
-        };
-        let nearest = |(&name, cluster): (&usize, &Cluster)| {
-            let mut others: Vec<(f64, usize)> = clusters
-                .iter()
-                .filter(|(other, _)| **other != name)
-                .map(|(other, own)| {
-                    (if near < clusters.len() { distance(cluster, own) } else { 0.0 }, *other)
-                })
-                .collect();
-            others.sort_by(|a, b| a.0.total_cmp(&b.0));
-            others
-                .into_iter()
-                .take(near)
-                .map(|(_, other)| (name.min(other), name.max(other)))
-                .collect::<Vec<_>>()
-        };
-        let mut pairs: Vec<(usize, usize)> =
-            clusters.iter().collect::<Vec<_>>().into_par_iter().flat_map_iter(nearest).collect();
-        pairs.sort_unstable();
-        pairs.dedup();
-        pairs
+    /// Whether two clusters have components in common, and one motion explains both.
+    fn is_one(&self, a: &Cluster, b: &Cluster, union: &mut Cluster) -> bool {
+        let tolerance = self.felt.tolerance;
+        if union.present(tolerance) >= a.present(tolerance) + b.present(tolerance) {
+            return false;
+        }
+        let is_explained =
+            |union: &Cluster| union.variance() <= EXPLAINED * tolerance || union.freedom <= 0.5;
+        if !is_explained(union) {
+            union.learn_more(&self.felt);
+        }
+        is_explained(union)
     }
 
-    /// Assigns each sensor to the cluster with the smallest residual, and learns the motions again, until no sensor changes.
-    ///
-    /// With `only_parts`, clusters that cannot be parts are dropped: those that are too small or of too low a rank.
-    pub(super) fn assigned(&self, mut clusters: Vec<Cluster>, only_parts: bool) -> Vec<Cluster> {
+    /// Each cluster with those of highest affinity, on average.
+    fn pairs(&self, clusters: &BTreeMap<usize, Cluster>) -> Vec<(usize, usize)> {
+        let affinity = |a: &Cluster, b: &Cluster| {
+            let sum: f64 =
+                a.sensors.iter().flat_map(|&i| b.sensors.iter().map(move |&j| self.affinities[(i, j)])).sum();
+            sum / (a.sensors.len() * b.sensors.len()) as f64
+        };
+        let names: Vec<usize> = clusters.keys().copied().collect();
+        let mut found: Vec<(usize, usize)> = names
+            .par_iter()
+            .flat_map_iter(|&a| {
+                let mut others: Vec<(f64, usize)> = names
+                    .iter()
+                    .filter(|&&b| b != a)
+                    .map(|&b| (affinity(&clusters[&a], &clusters[&b]), b))
+                    .collect();
+                others.sort_by(|one, other| other.0.total_cmp(&one.0));
+                others.truncate(NEIGHBOURS);
+                others.into_iter().map(move |(_, b)| (a.min(b), a.max(b)))
+            })
+            .collect();
+        found.sort_unstable();
+        found.dedup();
+        found
+    }
+
+    /// Assigns each of these sensors to the cluster that leaves it the smallest residual, if that explains it.
+    fn assigned(&mut self, mut clusters: Vec<Cluster>, sensors: &[usize]) -> Vec<Cluster> {
+        let tolerance = self.felt.tolerance;
         for _ in 0..MAX_ASSIGNMENTS {
-            let mut sizes: Vec<usize> =
-                clusters.iter().map(|cluster| cluster.representatives.len()).collect();
-            sizes.sort_unstable();
-            let small = sizes[sizes.len() / 2].div_ceil(2);
-            let can_be_part = |cluster: &&Cluster| {
-                let is_skin = cluster.fit.rank() >= ROTATION_RANK || cluster.representatives.len() >= small;
-                cluster.fit.freedom >= MIN_FREEDOM && is_skin
-            };
-            let parts: Vec<&Cluster> = clusters.iter().filter(can_be_part).collect();
-            let kept = if only_parts && !parts.is_empty() { parts } else { clusters.iter().collect() };
-            let residuals: Vec<Vec<f64>> =
-                kept.par_iter().map(|cluster| self.roots.residuals(&cluster.fit)).collect();
-            let best = |sensor: usize| {
-                smallest(residuals.iter().map(|residuals| residuals[sensor])).map_or(0, |(at, _)| at)
-            };
-            let labels: Vec<usize> = (0..self.roots.sensors()).map(best).collect();
-            let labels = named_by_appearance(&labels);
-            if labels == labels_of(&clusters) {
+            let residuals: Vec<Vec<f64>> = clusters.par_iter().map(|own| own.residuals(&self.felt)).collect();
+            let mut members: Vec<Vec<usize>> = vec![Vec::new(); clusters.len()];
+            let own: BTreeMap<usize, usize> = clusters
+                .iter()
+                .enumerate()
+                .flat_map(|(at, cluster)| cluster.sensors.iter().map(move |&sensor| (sensor, at)))
+                .collect();
+            for &sensor in sensors {
+                let Some((best, least)) = smallest(residuals.iter().map(|of| of[sensor])) else { continue };
+                let explains = least <= EXPLAINED * tolerance;
+                let to = match own.get(&sensor) {
+                    Some(&own) if residuals[own][sensor] <= tolerance || !explains => Some(own),
+                    _ if explains => Some(best),
+                    _ => None,
+                };
+                if let Some(to) = to {
+                    members[to].push(sensor);
+                }
+            }
+            if clusters.iter().zip(&members).all(|(cluster, own)| cluster.sensors == *own) {
                 break;
             }
-            clusters = self.clusters(members(&labels), clusters);
+            let felt = &self.felt;
+            clusters = clusters
+                .into_par_iter()
+                .zip(members)
+                .filter(|(_, own)| own.len() >= MIN_CLUSTER)
+                .map(|(cluster, own)| if cluster.sensors == own { cluster } else { Cluster::new(felt, own) })
+                .collect();
+            for cluster in &clusters {
+                cluster.complete(&mut self.felt);
+            }
         }
         clusters
     }
-}
 
-/// The sensors of each cluster.
-pub(super) fn members(labels: &[usize]) -> Vec<Vec<usize>> {
-    let mut members = vec![Vec::new(); labels.iter().max().map_or(0, |last| last + 1)];
-    labels.iter().enumerate().for_each(|(sensor, &label)| members[label].push(sensor));
-    members
-}
-
-/// The cluster of each sensor, by appearance.
-pub(super) fn labels_of(clusters: &[Cluster]) -> Vec<usize> {
-    let mut labels = vec![0; clusters.iter().map(|cluster| cluster.sensors.len()).sum()];
-    for (at, cluster) in clusters.iter().enumerate() {
-        cluster.sensors.iter().for_each(|&sensor| labels[sensor] = at);
+    /// Splits clusters into pieces that have nothing in common.
+    fn split(&mut self, clusters: Vec<Cluster>) -> Vec<Cluster> {
+        let mut found = Vec::new();
+        for cluster in clusters {
+            match self.split_once(&cluster) {
+                Some(pieces) => found.extend(pieces),
+                None => found.push(cluster),
+            }
+        }
+        found
     }
-    named_by_appearance(&labels)
+
+    /// The pieces of a cluster, if two of them have nothing in common: faces of two parts, say, of rank three each.
+    fn split_once(&mut self, cluster: &Cluster) -> Option<Vec<Cluster>> {
+        let most = (PIECE * cluster.sensors.len() as f64) as usize;
+        let mut seeds = self.seeds(&cluster.sensors, most);
+        seeds.sort_by_key(|own| Reverse(own.len()));
+        seeds.truncate(2);
+        let pieces: Vec<Cluster> = seeds.into_par_iter().map(|own| Cluster::new(&self.felt, own)).collect();
+        let [first, second] = &pieces[..] else { return None };
+        let both = Cluster::union(&self.felt, first, second);
+        let saving = first.description_length + second.description_length - both.description_length;
+        (saving <= MIN_SAVING).then(|| self.assigned(pieces, &cluster.sensors))
+    }
 }
 
 /// The first of the smallest numbers, and its place.
-pub(super) fn smallest(values: impl Iterator<Item = f64>) -> Option<(usize, f64)> {
+fn smallest(values: impl Iterator<Item = f64>) -> Option<(usize, f64)> {
     values.enumerate().reduce(|best, other| if other.1 < best.1 { other } else { best })
+}
+
+/// The median; 0 of none.
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(0.0)
 }

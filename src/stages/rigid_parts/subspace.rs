@@ -1,9 +1,10 @@
 //! Estimate the motion subspace of a part from the pressures on its sensors: its rank, and a basis over all samples.
 
+use faer::Mat;
 use rayon::prelude::*;
 
 use super::faces::faces;
-use super::factorisation::{Fit, MAX_RANK};
+use super::factorisation::{Fit, MAX_RANK, orthonormalise};
 use super::roots::Roots;
 use super::stratified::stratified;
 
@@ -17,8 +18,6 @@ const ITERATIONS: usize = 16;
 const NEGLIGIBLE: f64 = 0.01;
 /// Rank from which on the sensors of a face say something of how a part rotates. The end of a thin cylinder has rank one.
 pub(super) const ROTATION_RANK: usize = 3;
-/// Rank of a face from which on its motion may tell it from other faces: more than the end of a thin cylinder has.
-pub(super) const FACE_RANK: usize = 2;
 
 /// The motion subspace of a part: a basis of it, which is the motion of the part up to a linear map.
 #[derive(Debug, Clone, PartialEq)]
@@ -35,20 +34,32 @@ impl MotionSubspace {
     /// `rank` is k; without it, the lowest that explains nearly what the best one does. `signed` says whether negative pressures
     /// are signal.
     pub(crate) fn of_cluster(series: &[&[f32]], rank: Option<usize>, signed: bool) -> Self {
-        /// Samples whose roots are in memory at once.
-        const BLOCK: usize = 240;
         let series: Vec<&[f32]> =
             stratified(series.len(), MAX_SENSORS).map(|sensor| series[sensor]).collect();
         let samples = series.first().map_or(0, |series| series.len());
         let Some(fit) = learn(&Roots::at(&series, &felt_samples(&series, samples), signed), rank) else {
             return Self { rank: 0, basis: Vec::new() };
         };
-        let k = fit.rank();
+        Self::from_orthonormal(&series, fit.loadings(), signed)
+    }
+
+    /// From given loadings c of sensors, sensors × k, and their series of T pressures, which must be finite.
+    pub(super) fn of_loadings(series: &[&[f32]], mut loadings: Mat<f64>, signed: bool) -> Self {
+        let k = loadings.ncols();
+        orthonormalise(&mut loadings, &mut Mat::zeros(0, k));
+        Self::from_orthonormal(series, &loadings, signed)
+    }
+
+    /// The same, with c whose columns are orthonormal.
+    fn from_orthonormal(series: &[&[f32]], loadings: &Mat<f64>, signed: bool) -> Self {
+        /// Samples whose roots are in memory at once.
+        const BLOCK: usize = 240;
+        let samples = series.first().map_or(0, |series| series.len());
+        let k = loadings.ncols();
         let mut basis = vec![0.0; samples * k];
         basis.par_chunks_mut(BLOCK * k).enumerate().for_each(|(block, values)| {
             let samples: Vec<usize> = (block * BLOCK..block * BLOCK + values.len() / k).collect();
-            let roots = Roots::at(&series, &samples, signed);
-            values.copy_from_slice(&roots.motion(&fit));
+            values.copy_from_slice(&Roots::at(series, &samples, signed).motion(loadings));
         });
         Self { rank: k, basis }
     }

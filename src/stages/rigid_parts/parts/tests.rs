@@ -2,15 +2,11 @@
 
 use rand::RngExt;
 
-use super::super::cluster::Cluster;
 use super::super::fixtures::sensor_series;
-use super::super::search::MIN_SAVING;
 use super::*;
 use crate::numerics::partition::adjusted_rand_index;
 use crate::numerics::rng::stream;
 use crate::stages::agent::{Agent, Skin};
-use crate::stages::distance::information_metric;
-use crate::stages::quantise::{Quantise, Scheme, quantise};
 use crate::stages::sense::{Sense, sense};
 use crate::stages::simulate::fixtures::{INTERVAL, Scene};
 use crate::stages::simulate::simulate;
@@ -27,52 +23,68 @@ fn tactile() -> (Tactile, Vec<usize>) {
     )
 }
 
-fn distances(tactile: &Tactile) -> Distances {
-    information_metric(&quantise(tactile, &Quantise { levels: 8, scheme: Scheme::PerSensor }))
-}
-
 #[test]
-fn parts_and_their_number_are_recovered_from_seed_clusters() {
+fn parts_and_their_number_are_recovered() {
     let (tactile, truth) = tactile();
     let all: Vec<usize> = (0..truth.len()).collect();
-    let found = rigid_parts(&tactile, &all, &distances(&tactile));
+    let found = rigid_parts(&tactile, &all);
     assert_eq!(found.labels, truth);
-    assert!(found.residuals.iter().all(|residual| *residual < 0.1));
+    assert!(found.residuals.iter().all(|residual| *residual < 0.01));
     for ((label, residual), others) in found.labels.iter().zip(&found.residuals).zip(&found.alternatives) {
         assert!(others[0].1 > *residual && others.is_sorted_by(|one, other| one.1 <= other.1));
         let mut parts: Vec<usize> = others.iter().map(|other| other.0).chain([*label]).collect();
         parts.sort_unstable();
         assert!(parts.into_iter().eq(0..=*truth.iter().max().unwrap()));
     }
+    assert_eq!(found.motions.len(), 5);
 }
 
 #[test]
-fn sensors_without_distances_go_to_the_part_that_explains_them() {
+fn other_sensors_go_to_the_part_that_explains_them() {
     let (tactile, truth) = tactile();
     let some: Vec<usize> = (0..truth.len()).filter(|sensor| sensor % 3 != 0).collect();
-    let series: Vec<&[f32]> = tactile.series().collect();
-    let pressures = some.iter().flat_map(|&sensor| series[sensor]).copied().collect();
-    let found = rigid_parts(&tactile, &some, &distances(&Tactile { samples: tactile.samples, pressures }));
+    let found = rigid_parts(&tactile, &some);
     assert!(adjusted_rand_index(&found.labels, &truth) > 0.99);
 }
 
 #[test]
-fn a_cluster_of_two_parts_has_a_longer_description_than_both() {
+fn the_number_of_threads_changes_no_bit() {
+    let (tactile, _) = tactile();
+    let some: Vec<usize> = (0..tactile.sensors()).step_by(2).collect();
+    let on = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| rigid_parts(&tactile, &some))
+    };
+    assert_eq!(on(1), on(3));
+}
+
+#[test]
+fn what_no_motion_explains_is_one_part() {
+    let mut rng = stream(5, 1, "rigid", 0);
+    let pressures = (0..40 * 500).map(|_| rng.random_range(-1.0_f32..1.0).max(0.0)).collect();
+    let found = rigid_parts(&Tactile { samples: 500, pressures }, &(0..40).collect::<Vec<usize>>());
+    assert_eq!(found.labels, [0; 40]);
+    assert!(found.residuals.iter().sum::<f64>() > 40.0 * 0.1, "{:?}", found.residuals);
+}
+
+#[test]
+fn the_union_of_two_parts_has_a_longer_description_than_both() {
     let (tactile, truth) = tactile();
     let series: Vec<&[f32]> = tactile.series().collect();
-    let observations =
-        Observations { series, signed: false, distances: &Distances { sensors: 0, values: Vec::new() } };
-    let every: Vec<usize> = (0..truth.len()).collect();
-    let roots = observations.roots(&every, &observations.informative_samples(&every)[0]);
+    let samples: Vec<usize> = stratified(tactile.samples, MAX_SAMPLES).collect();
+    let roots = Roots::at(&series, &samples, false).normalised();
+    let sizes = roots.sizes();
+    let roots = roots.equalised(&sizes);
+    let completed = Completion::new(&roots).velocities;
+    let felt = Felt { roots, completed, tolerance: 3e-4 };
     let own = |parts: &[usize]| {
         (0..truth.len()).filter(|sensor| parts.contains(&truth[*sensor])).collect::<Vec<_>>()
     };
-    let length =
-        |sensors: &[usize]| Cluster::new(&roots, sensors.to_vec(), 1, ITERATIONS[0]).description_length;
-    assert!(length(&own(&[1, 2])) > length(&own(&[1])) + length(&own(&[2])) + MIN_SAVING);
+    let length = |sensors: &[usize]| Cluster::new(&felt, sensors.to_vec()).description_length;
+    assert!(length(&own(&[1, 2])) > length(&own(&[1])) + length(&own(&[2])) + 1.0);
     // The halves of one part have a longer description than the whole.
     let (first, second): (Vec<usize>, Vec<usize>) = own(&[2]).into_iter().partition(|sensor| sensor % 2 == 0);
-    assert!(length(&own(&[2])) + MIN_SAVING < length(&first) + length(&second));
+    assert!(length(&own(&[2])) + 1.0 < length(&first) + length(&second));
 }
 
 #[test]
@@ -92,15 +104,8 @@ fn a_large_face_joins_the_part_that_it_shares_components_with() {
         sensor_series(&motions[sensor / 80], &c).collect::<Vec<f32>>()
     };
     let series: Vec<Vec<f32>> = (0..120).map(sensor).collect();
-    let series = series.iter().map(Vec::as_slice).collect();
-    let distances = &Distances { sensors: 0, values: Vec::new() };
-    let observations = Observations { series, signed: false, distances };
-    let [every, samples] = [120, SAMPLES].map(|count| (0..count).collect::<Vec<usize>>());
-    let search = Search { roots: observations.roots(&every, &samples), distances, iterations: ITERATIONS[1] };
-    let thirds = [0, 40, 80].map(|first| (first..first + 40).collect::<Vec<usize>>());
-    let (parts, unassigned) = search.parts_and_unassigned(search.clusters(thirds.to_vec(), Vec::new()));
-    let mut found: Vec<Vec<usize>> = parts.into_iter().map(|part| part.sensors).collect();
-    found.sort();
-    assert_eq!(found, [(0..80).collect::<Vec<usize>>(), (80..120).collect()]);
-    assert!(unassigned.is_empty());
+    let pressures = series.concat();
+    let found = rigid_parts(&Tactile { samples: SAMPLES, pressures }, &(0..120).collect::<Vec<usize>>());
+    assert_eq!(found.labels, (0..120).map(|sensor| sensor / 80).collect::<Vec<usize>>());
+    assert!(found.unassigned.is_empty());
 }
