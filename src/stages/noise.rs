@@ -10,7 +10,7 @@
 //!   is on the lee side of its part has fewer.
 //! * It has one size. Of Gaussian noise, the median absolute difference is 2.1 times the lower quartile. Touch, which is
 //!   nothing for a while and then grows large, has all sizes.
-//! * It comes to each sensor by itself. What [several sensors share](shared) is movement, however rough.
+//! * It comes to each sensor by itself. What several sensors share is movement, however rough.
 //! * It has no memory. Two differences that share no sample, three samples apart, have the same sign half the time; of a smooth
 //!   movement, or of one that rings from step to step, they have it more often.
 //!
