@@ -10,12 +10,12 @@
 //!   is on the lee side of its part has fewer.
 //! * It has one size. Of Gaussian noise, the median absolute difference is 2.1 times the lower quartile. Touch, which is
 //!   nothing for a while and then grows large, has all sizes.
-//! * It comes to each sensor by itself. What several sensors share is movement, however rough.
 //! * It has no memory. Two differences that share no sample, three samples apart, have the same sign half the time; of a smooth
 //!   movement, or of one that rings from step to step, they have it more often.
+//! * It comes to each sensor by itself. What several sensors share is movement, however rough.
 //!
 //! On the body of the paper with 120 sensors, at p = 0 and 0.9, of 300 to 15,000 samples, and signed or not (seeds 11 to 13), no sensor
-//! without noise has all of these marks, and every sensor with noise of 0.01 or 0.1 of its root mean square has them. Any one mark alone
+//! without noise has the first three marks, and every sensor with noise of 0.01 or 0.1 of its root mean square has them. Any one alone
 //! fails: where joints rest for long, few differences are left, and they may well have one size.
 //!
 //! The median is 1.0 to 1.2 standard deviations of the noise where values below 0 are cut, and 1.65 where they are not.
