@@ -16,9 +16,7 @@ pub(crate) fn clusters(
     method: Method,
     clusters: usize,
 ) -> Vec<usize> {
-    let mut condensed: Vec<f64> =
-        (0..n).flat_map(|i| (i + 1..n).map(move |j| (i, j))).map(|(i, j)| distance(i, j)).collect();
-    cut(linkage(&mut condensed, n, method).steps(), n, clusters.max(1))
+    cut(linkage(&mut condensed(n, distance), n, method).steps(), n, clusters.max(1))
 }
 
 /// The largest clusters of at most `size` points that merge at no more than a distance of `most`, in the order of their merges;
@@ -32,9 +30,7 @@ pub(crate) fn largest_clusters(
     size: usize,
     most: f64,
 ) -> Vec<Vec<usize>> {
-    let mut condensed: Vec<f64> =
-        (0..n).flat_map(|i| (i + 1..n).map(move |j| (i, j))).map(|(i, j)| distance(i, j)).collect();
-    let dendrogram = linkage(&mut condensed, n, method);
+    let dendrogram = linkage(&mut condensed(n, distance), n, method);
     let mut members: Vec<Vec<usize>> = (0..n).map(|point| vec![point]).collect();
     for step in dendrogram.steps() {
         let both = [step.cluster1, step.cluster2];
@@ -47,6 +43,11 @@ pub(crate) fn largest_clusters(
         members.push(own);
     }
     members.into_iter().filter(|own| !own.is_empty()).collect()
+}
+
+/// The distances of all i < j, by rows, as `kodama` takes them.
+fn condensed(n: usize, distance: impl Fn(usize, usize) -> f64) -> Vec<f64> {
+    (0..n).flat_map(|i| (i + 1..n).map(move |j| (i, j))).map(|(i, j)| distance(i, j)).collect()
 }
 
 /// Merge s of `steps` joins two of the n points or of the clusters n, n + 1, … to cluster n + s. Merges at distance 0 are made

@@ -106,6 +106,25 @@ impl<'a> Als<'a> {
             product: simd.select_f64s(is_informative, root, simd.mul_f64s(weight, instead)),
         }
     }
+
+    /// The errors of the informative ones of these roots, 0 for others, and their weights.
+    #[inline(always)]
+    fn error<S: Simd>(
+        &self,
+        simd: S,
+        sensor: usize,
+        t: usize,
+        c: &[f64],
+        motion: &Mat<f64>,
+    ) -> (S::f64s, S::f64s) {
+        let mut predicted = simd.splat_f64s(0.0);
+        for (at, c) in c.iter().enumerate() {
+            let w = load(simd, motion.col_as_slice(at), t);
+            predicted = simd.mul_add_f64s(simd.splat_f64s(*c), w, predicted);
+        }
+        let Informative { weight, product } = self.informative(simd, sensor, t, predicted);
+        (simd.sub_f64s(product, simd.mul_f64s(weight, predicted)), weight)
+    }
 }
 
 /// The informative ones of some roots.
@@ -249,15 +268,9 @@ impl WithSimd for Residual<'_> {
         for t in (0..samples).step_by(S::F64_LANES) {
             let [mut residual, mut informative] = [none; 2];
             for (sensor, c) in loadings.chunks(k.max(1)).enumerate() {
-                let mut predicted = none;
-                for (at, c) in c.iter().enumerate() {
-                    let w = load(simd, motion.col_as_slice(at), t);
-                    predicted = simd.mul_add_f64s(simd.splat_f64s(*c), w, predicted);
-                }
-                let found = als.informative(simd, sensor, t, predicted);
-                let error = simd.sub_f64s(found.product, simd.mul_f64s(found.weight, predicted));
+                let (error, weight) = als.error(simd, sensor, t, c, motion);
                 residual = simd.mul_add_f64s(error, error, residual);
-                informative = simd.add_f64s(informative, found.weight);
+                informative = simd.add_f64s(informative, weight);
             }
             residuals = simd.add_f64s(residuals, residual);
             freedoms = simd.add_f64s(freedoms, simd.max_f64s(none, simd.sub_f64s(informative, rank)));
@@ -284,15 +297,9 @@ impl WithSimd for Residuals<'_> {
         for (sensor, c) in loadings.chunks(motion.ncols().max(1)).enumerate() {
             let [mut residual, mut informative] = [none; 2];
             for t in (0..motion.nrows()).step_by(S::F64_LANES) {
-                let mut predicted = none;
-                for (at, c) in c.iter().enumerate() {
-                    let w = load(simd, motion.col_as_slice(at), t);
-                    predicted = simd.mul_add_f64s(simd.splat_f64s(*c), w, predicted);
-                }
-                let own = als.informative(simd, sensor, t, predicted);
-                let error = simd.sub_f64s(own.product, simd.mul_f64s(own.weight, predicted));
+                let (error, weight) = als.error(simd, sensor, t, c, motion);
                 residual = simd.mul_add_f64s(error, error, residual);
-                informative = simd.add_f64s(informative, own.weight);
+                informative = simd.add_f64s(informative, weight);
             }
             found.push([simd.reduce_sum_f64s(residual), simd.reduce_sum_f64s(informative)]);
         }

@@ -8,8 +8,8 @@
 use faer::Mat;
 
 use super::als::Als;
-use super::factorisation::MAX_RANK;
-use super::roots::{Roots, product};
+use super::factorisation::{MAX_RANK, principal_axes};
+use super::roots::{Roots, columns, product};
 use super::stratified::stratified;
 use crate::numerics::eigen::largest;
 
@@ -48,11 +48,11 @@ pub(super) struct Cluster {
     /// c of these, sensors × k.
     loadings: Mat<f64>,
     /// w, samples × k.
-    pub motion: Mat<f64>,
+    motion: Mat<f64>,
     /// Their roots where they are felt, and elsewhere what completes them: samples × sensors.
     completed: Mat<f64>,
     /// Variances of the components, descending: the sum of the sensors' variances along each.
-    pub components: Vec<f64>,
+    components: Vec<f64>,
     /// Residual sum of squares of the informative roots, on average over samples.
     residual: f64,
     /// Degrees of freedom of that residual: informative roots beyond the k that w takes, on average over samples.
@@ -270,13 +270,6 @@ fn components(loadings: &Mat<f64>, motion: &Mat<f64>) -> Vec<f64> {
         .map_or_else(|_| Vec::new(), |eigen| eigen.values.iter().map(|value| value.max(0.0)).collect())
 }
 
-/// The first principal axes of some columns.
-fn principal_axes(columns: &Mat<f64>, count: usize) -> Mat<f64> {
-    let squares = product(columns.transpose(), columns.as_ref());
-    largest(squares.as_ref(), count)
-        .map_or_else(|_| Mat::identity(squares.nrows(), count), |eigen| eigen.vectors)
-}
-
 /// X of X A = B for a symmetric A, k × k, with a ridge.
 fn solved(squares: &Mat<f64>, products: &Mat<f64>) -> Mat<f64> {
     /// As a share of the mean square.
@@ -288,8 +281,4 @@ fn solved(squares: &Mat<f64>, products: &Mat<f64>) -> Mat<f64> {
     let Some(factor) = matrix.cholesky() else { return Mat::zeros(products.nrows(), k) };
     let inverse = factor.inverse();
     product(products.as_ref(), Mat::from_fn(k, k, |i, j| inverse[(i, j)]).as_ref())
-}
-
-fn columns(matrix: &Mat<f64>, which: &[usize]) -> Mat<f64> {
-    Mat::from_fn(matrix.nrows(), which.len(), |row, at| matrix[(row, which[at])])
 }

@@ -47,14 +47,13 @@ impl Completion {
         let rank = (samples.min(sensors) / MIN_PER_RANK).clamp(1, MAX_RANK);
         let mut blocks = Block::all(roots);
         let mut loadings = start(&blocks, rank);
-        let felt: f64 = in_order(&blocks, Block::felt_squares).into_iter().sum();
         let (mut momentum, mut step, mut before) = (MOMENTUM[0], 0.0, f64::INFINITY);
         for iteration in 0..ITERATIONS {
             let next = updated(&mut blocks, loadings.as_ref(), step, samples);
-            let errors: Vec<f64> = blocks.par_iter_mut().map(|block| block.advance(next.as_ref())).collect();
+            blocks.par_iter_mut().for_each(|block| block.advance(next.as_ref()));
             step = momentum;
             if iteration % CHECK == 0 {
-                let error = errors.into_iter().sum::<f64>() / felt;
+                let error = in_order(&blocks, Block::error).into_iter().sum::<f64>();
                 if error > before {
                     (momentum, step) = (f32::max(MOMENTUM[2], momentum * PACE[1]), 0.0);
                 } else {
@@ -118,22 +117,8 @@ impl Block {
         Mat::from_fn(self.roots.nrows(), self.roots.ncols(), |t, sensor| self.filled(t, sensor, step))
     }
 
-    /// The sum of the squares of the roots that are felt.
-    fn felt_squares(&self) -> f64 {
-        let own = |sensor: usize| {
-            let felt = self
-                .roots
-                .col_as_slice(sensor)
-                .iter()
-                .zip(&self.thresholds)
-                .filter(|(root, least)| root >= least);
-            felt.map(|(root, _)| f64::from(*root).powi(2)).sum::<f64>()
-        };
-        (0..self.roots.ncols()).map(own).sum()
-    }
-
-    /// Replaces the estimate by the product of both factors. Out: its squared error.
-    fn advance(&mut self, loadings: MatRef<'_, f32>) -> f64 {
+    /// Replaces the estimate by the product of both factors.
+    fn advance(&mut self, loadings: MatRef<'_, f32>) {
         std::mem::swap(&mut self.estimate, &mut self.last);
         matmul(
             self.estimate.as_mut(),
@@ -143,6 +128,10 @@ impl Block {
             1.0,
             Par::Seq,
         );
+    }
+
+    /// The squared error of the estimate.
+    fn error(&self) -> f64 {
         let own = |sensor: usize| {
             let both = self.roots.col_as_slice(sensor).iter().zip(self.estimate.col_as_slice(sensor));
             let error = |((root, estimate), least): ((&f32, &f32), &f32)| {

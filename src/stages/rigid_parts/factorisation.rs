@@ -54,7 +54,7 @@ impl Roots {
     /// Where the iterations start: the principal components of series that are linear in the motion.
     pub(crate) fn start(&self) -> Start {
         let linear = if self.signed { self.values.clone() } else { self.differences() };
-        let loadings = principal_axes(&product(linear.transpose(), linear.as_ref()));
+        let loadings = principal_axes(&linear, MAX_RANK);
         Start { motion: product(linear.as_ref(), loadings.as_ref()), loadings }
     }
 
@@ -106,10 +106,11 @@ impl Roots {
     }
 }
 
-/// The first eigenvectors, by descending eigenvalue.
-fn principal_axes(squares: &Mat<f64>) -> Mat<f64> {
-    largest(squares.as_ref(), MAX_RANK)
-        .map_or_else(|_| Mat::identity(squares.nrows(), MAX_RANK.min(squares.nrows())), |eigen| eigen.vectors)
+/// So many principal axes of some columns, or as many as there are, by descending variance.
+pub(super) fn principal_axes(columns: &Mat<f64>, count: usize) -> Mat<f64> {
+    let squares = product(columns.transpose(), columns.as_ref());
+    largest(squares.as_ref(), count)
+        .map_or_else(|_| Mat::identity(squares.nrows(), count.min(squares.nrows())), |eigen| eigen.vectors)
 }
 
 /// Makes the columns of c orthonormal along its principal axes, and rotates w with it.

@@ -15,8 +15,7 @@ use super::faces::similar;
 use super::medians::typical_size;
 use super::roots::{Roots, is_signed};
 use super::search::Search;
-use super::stratified::stratified;
-use super::subspace::{MotionSubspace, ROTATION_RANK};
+use super::subspace::{MotionSubspace, ROTATION_RANK, felt_samples};
 use crate::numerics::partition::named_by_appearance;
 use crate::stages::sense::Tactile;
 
@@ -60,9 +59,10 @@ pub fn rigid_parts(tactile: &Tactile, sensors: &[usize]) -> RigidParts {
     let all: Vec<&[f32]> = tactile.series().collect();
     let some: Vec<&[f32]> = sensors.iter().map(|&sensor| all[sensor]).collect();
     let samples = felt_samples(&some, MAX_SAMPLES);
-    let roots = Roots::at(&some, &samples, signed).normalised();
-    let sizes = roots.sizes();
-    let roots = roots.equalised(&sizes);
+    let every = Roots::at(&all, &samples, signed).normalised();
+    let sizes = every.select(sensors).sizes();
+    let every = every.equalised(&sizes);
+    let roots = every.select_as_they_are(sensors);
     let completion = Completion::new(&roots);
     let felt = Felt { roots, completed: completion.velocities, tolerance: 0.0 };
     let mut search = Search::new(felt, completion.affinities);
@@ -74,7 +74,6 @@ pub fn rigid_parts(tactile: &Tactile, sensors: &[usize]) -> RigidParts {
     for (at, part) in parts.iter().enumerate() {
         part.sensors.iter().for_each(|&sensor| labels[sensors[sensor]] = Some(at));
     }
-    let every = Roots::at(&all, &samples, signed).normalised().equalised(&sizes);
     let residuals: Vec<Vec<f64>> = parts.par_iter().map(|part| part.shares(&every)).collect();
     for (sensor, label) in labels.iter_mut().enumerate() {
         *label = label.or_else(|| explaining(&residuals, sensor, search.most_residual()));
@@ -133,13 +132,6 @@ fn motion(part: &Cluster, series: &[&[f32]], samples: &[usize], signed: bool) ->
     let loadings = part.loadings();
     let loadings = Mat::from_fn(loadings.nrows(), loadings.ncols(), |i, j| loadings[(i, j)] * scales[i]);
     MotionSubspace::of_loadings(&series, loadings, signed)
-}
-
-/// At most so many samples, of those at which anything is felt.
-fn felt_samples(series: &[&[f32]], most: usize) -> Vec<usize> {
-    let samples = series[0].len();
-    let felt: Vec<usize> = (0..samples).filter(|t| series.iter().any(|series| series[*t] != 0.0)).collect();
-    stratified(felt.len(), most).map(|at| felt[at]).collect()
 }
 
 #[cfg(test)]

@@ -151,7 +151,7 @@ pub(super) fn product(left: MatRef<'_, f64>, right: MatRef<'_, f64>) -> Mat<f64>
 }
 
 /// Some columns.
-fn columns(matrix: &Mat<f64>, which: &[usize]) -> Mat<f64> {
+pub(super) fn columns(matrix: &Mat<f64>, which: &[usize]) -> Mat<f64> {
     Mat::from_fn(matrix.nrows(), which.len(), |row, at| matrix[(row, which[at])])
 }
 

@@ -36,8 +36,7 @@ impl MotionSubspace {
     pub(crate) fn of_cluster(series: &[&[f32]], rank: Option<usize>, signed: bool) -> Self {
         let series: Vec<&[f32]> =
             stratified(series.len(), MAX_SENSORS).map(|sensor| series[sensor]).collect();
-        let samples = series.first().map_or(0, |series| series.len());
-        let Some(fit) = learn(&Roots::at(&series, &felt_samples(&series, samples), signed), rank) else {
+        let Some(fit) = learn(&Roots::at(&series, &felt_samples(&series, MAX_SAMPLES), signed), rank) else {
             return Self { rank: 0, basis: Vec::new() };
         };
         Self::from_orthonormal(&series, fit.loadings(), signed)
@@ -104,11 +103,12 @@ impl MotionSubspace {
     }
 }
 
-/// Samples that c is learned from, of those at which a sensor feels anything.
-fn felt_samples(series: &[&[f32]], samples: usize) -> Vec<usize> {
+/// At most so many samples, spread over those at which a sensor feels anything.
+pub(super) fn felt_samples(series: &[&[f32]], most: usize) -> Vec<usize> {
+    let samples = series.first().map_or(0, |series| series.len());
     let felt: Vec<usize> =
         (0..samples).into_par_iter().filter(|t| series.iter().any(|series| series[*t] != 0.0)).collect();
-    stratified(felt.len(), MAX_SAMPLES).map(|at| felt[at]).collect()
+    stratified(felt.len(), most).map(|at| felt[at]).collect()
 }
 
 /// c and w; `None` if nothing is felt.

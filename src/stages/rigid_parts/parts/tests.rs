@@ -3,6 +3,7 @@
 use rand::RngExt;
 
 use super::super::fixtures::sensor_series;
+use super::super::stratified::stratified;
 use super::*;
 use crate::numerics::partition::adjusted_rand_index;
 use crate::numerics::rng::stream;
