@@ -14,7 +14,7 @@ use support::repository::{read, repository};
 use support::said::Said;
 
 /// Largest package, in bytes before it is compressed.
-const BYTES: u64 = 2_020_000;
+const BYTES: u64 = 2_000_000;
 
 fn cargo(arguments: &str) -> String {
     let mut command = Command::new(env!("CARGO"));

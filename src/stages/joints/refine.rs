@@ -10,16 +10,12 @@ use super::assign::{assign, gain};
 use super::tree::Joints;
 use crate::numerics::partition::{named_by_appearance, sizes};
 use crate::stages::rigid_parts::{
-    MotionSubspace, RigidParts, Roots, is_signed, opposite_pairs, outlier_limit, similar, stratified,
-    typical_size,
+    MotionSubspace, RigidParts, Roots, is_signed, opposite_pairs, similar, stratified, typical_size,
 };
 use crate::stages::sense::Tactile;
 
 /// Samples that similarity is computed from, spread over all.
 const MAX_SAMPLES: usize = 2000;
-/// Largest residual of a sensor that the tree is learned from, or three times the median of its part: beyond, it may be on
-/// another part.
-const TRUSTED: f64 = 0.02;
 /// Information, in nats, that the tree must gain by merging a small part with another, so that the part is spurious.
 const SPURIOUS: f64 = 1.0;
 /// Rank from which on a part is no piece of another: a cylinder feels its motion but its spin.
@@ -180,28 +176,14 @@ impl<'a> Refinement<'a> {
     }
 }
 
-/// The trusted sensors of parts, and the sensors of unassigned clusters.
+/// The sensors of parts, and those of unassigned clusters.
 fn parts_and_unassigned(parts: &RigidParts) -> (Members, Members) {
     let (mut known, mut unassigned) = (Members::new(), Members::new());
-    for (sensor, (label, is_trusted)) in parts.labels.iter().zip(trusted(parts)).enumerate() {
-        if parts.unassigned.contains(label) {
-            unassigned.entry(*label).or_default().push(sensor);
-        } else if is_trusted {
-            known.entry(*label).or_default().push(sensor);
-        }
+    for (sensor, label) in parts.labels.iter().enumerate() {
+        let members = if parts.unassigned.contains(label) { &mut unassigned } else { &mut known };
+        members.entry(*label).or_default().push(sensor);
     }
     (known, unassigned)
-}
-
-/// Whether the motion of its part explains each sensor. Others may be on another part, and would add the motion of that one.
-fn trusted(parts: &RigidParts) -> Vec<bool> {
-    let most = |part: usize| {
-        let own = parts.labels.iter().zip(&parts.residuals).filter(|(label, _)| **label == part);
-        outlier_limit(own.map(|(_, residual)| *residual).collect(), TRUSTED)
-    };
-    let count = parts.labels.iter().max().map_or(0, |last| last + 1);
-    let most: Vec<f64> = (0..count).map(most).collect();
-    parts.labels.iter().zip(&parts.residuals).map(|(part, residual)| *residual <= most[*part]).collect()
 }
 
 #[cfg(test)]

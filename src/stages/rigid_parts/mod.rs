@@ -26,7 +26,7 @@ mod subspace;
 
 pub(crate) use self::faces::{opposite_pairs, similar};
 pub(crate) use self::factorisation::MAX_RANK;
-pub(crate) use self::medians::{outlier_limit, typical_size};
+pub(crate) use self::medians::typical_size;
 pub use self::parts::{RigidParts, rigid_parts};
 pub(crate) use self::roots::{Roots, is_signed};
 pub use self::search::MIN_SENSORS;
