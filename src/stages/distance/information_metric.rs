@@ -6,7 +6,7 @@
 use rayon::prelude::*;
 
 use super::bit_planes::{self, BitPlanes, TILE};
-use super::changes::Changes;
+use super::runs::{self, Counter, Runs};
 use super::stretches::Stretches;
 use crate::stages::quantise::Symbols;
 
@@ -29,29 +29,40 @@ impl Distances {
 /// Maximum number of sensors: their distances take 3.2 GB.
 pub const MAX_SENSORS: usize = 20_000;
 
+/// Sensors that are counted with the same running counts: their joint counts take 1 MB at most.
+const COLUMNS: usize = 1024;
+
 /// What finds the joint counts of two sensors. All give the same counts.
 enum Counting<'a> {
     /// (N − 1)² passes over T bits.
     Planes(BitPlanes),
-    /// Two steps for each change of a symbol.
-    Changes(Changes<'a>),
+    /// A step for each change of one sensor's symbol.
+    Runs(Runs<'a>),
     /// One pass over T bits, and a step for each time at which either symbol changes.
     Stretches(Stretches<'a>),
 }
 
 impl<'a> Counting<'a> {
+    /// Rows and columns of distances that are found together.
+    fn tile(&self) -> (usize, usize) {
+        match self {
+            Self::Runs(_) => (1, COLUMNS),
+            _ => (TILE, TILE),
+        }
+    }
+
     /// That which takes the least time, by what was measured on processors of both kinds (`benches/README.md`).
     fn fastest(symbols: &'a Symbols) -> Self {
         // In times that a word of bit planes takes.
         let step = if bit_planes::counts_by_eight() { 20 } else { 4 };
-        let of_both = 2 * Changes::mean(symbols);
-        let planes = (symbols.levels - 1).pow(2) * symbols.samples / 64;
-        let changes = of_both * step;
-        let stretches = (symbols.samples / 13 + of_both.min(symbols.samples) * 2 / 3) * step;
-        if planes <= changes.min(stretches) {
+        let (changes, levels) = (mean_changes(symbols), symbols.levels);
+        let planes = (levels - 1).pow(2) * symbols.samples / 64;
+        let runs = changes * step * if levels <= 8 { 3 } else { 6 } / 4;
+        let stretches = (symbols.samples / 13 + (2 * changes).min(symbols.samples) * 2 / 3) * step;
+        if planes <= runs.min(stretches) {
             Self::Planes(BitPlanes::new(symbols))
-        } else if changes <= stretches {
-            Self::Changes(Changes::new(symbols))
+        } else if runs <= stretches && levels <= runs::MAX_LEVELS {
+            Self::Runs(Runs::new(symbols))
         } else {
             Self::Stretches(Stretches::new(symbols))
         }
@@ -76,35 +87,46 @@ fn by(counting: &Counting, symbols: &Symbols) -> Distances {
     let of_marginals: Vec<Vec<f64>> =
         marginals.iter().map(|counts| counts.iter().map(logarithm).collect()).collect();
 
+    let (height, width) = counting.tile();
     let tiles: Vec<(usize, usize)> = (0..sensors)
-        .step_by(TILE)
-        .flat_map(|row| (row..sensors).step_by(TILE).map(move |column| (row, column)))
+        .step_by(height)
+        .flat_map(|row| (row..sensors).step_by(width).map(move |column| (row, column)))
         .collect();
+    let columns = |i: usize, column: usize| column.max(i + 1)..(column + width).min(sensors);
     let pairs = |&(row, column): &(usize, usize)| {
-        let rows = row..(row + TILE).min(sensors);
-        rows.flat_map(move |i| (column.max(i + 1)..(column + TILE).min(sensors)).map(move |j| (i, j)))
+        let rows = row..(row + height).min(sensors);
+        rows.flat_map(move |i| columns(i, column).map(move |j| (i, j)))
     };
-    let tiled: Vec<Vec<f64>> = tiles
-        .par_iter()
-        .map(|tile| {
-            let mut joint = vec![0; levels * levels];
-            let mut distances = |count: &dyn Fn(usize, usize, &mut [u32])| -> Vec<f64> {
-                let metric = |(i, j)| {
-                    count(i, j, &mut joint);
-                    metric_of_counts(&joint, &of_marginals[i], &of_marginals[j], &logarithms)
+    let metric = |i: usize, j: usize, joint: &[u32]| {
+        metric_of_counts(joint, &of_marginals[i], &of_marginals[j], &logarithms)
+    };
+    let of_tile = |(joint, counter): &mut (Vec<u32>, Counter), tile: &(usize, usize)| -> Vec<f64> {
+        match counting {
+            Counting::Planes(planes) => {
+                let counted = planes.count(tile.0, tile.1);
+                let of_pair = |(i, j)| {
+                    counted.joint(i, j, &marginals, joint);
+                    metric(i, j, joint)
                 };
-                pairs(tile).map(metric).collect()
-            };
-            match counting {
-                Counting::Planes(planes) => {
-                    let counted = planes.count(tile.0, tile.1);
-                    distances(&|i, j, joint| counted.joint(i, j, &marginals, joint))
-                }
-                Counting::Changes(changes) => distances(&|i, j, joint| changes.joint(i, j, joint)),
-                Counting::Stretches(stretches) => distances(&|i, j, joint| stretches.joint(i, j, joint)),
+                pairs(tile).map(of_pair).collect()
             }
-        })
-        .collect();
+            Counting::Runs(runs) => {
+                let (i, others) = (tile.0, columns(tile.0, tile.1));
+                let counts = runs.count(i, others.clone(), counter);
+                others.zip(counts).map(|(j, joint)| metric(i, j, joint)).collect()
+            }
+            Counting::Stretches(stretches) => {
+                let of_pair = |(i, j)| {
+                    stretches.joint(i, j, joint);
+                    metric(i, j, joint)
+                };
+                pairs(tile).map(of_pair).collect()
+            }
+        }
+    };
+    let scratch = || (vec![0; levels * levels], Counter::default());
+    let tiled: Vec<Vec<f64>> =
+        tiles.par_iter().map_init(scratch, |scratch, tile| of_tile(scratch, tile)).collect();
 
     let mut values = vec![0.0; sensors * sensors];
     for ((i, j), distance) in tiles.iter().flat_map(pairs).zip(tiled.into_iter().flatten()) {
@@ -136,6 +158,13 @@ fn metric_of_counts(joint: &[u32], first: &[f64], second: &[f64], logarithms: &[
         }
     }
     sum / (logarithms.len() - 1) as f64
+}
+
+/// How often a sensor changes its symbol on average.
+fn mean_changes(symbols: &Symbols) -> usize {
+    let of_sensor = |series: &[u8]| series.windows(2).filter(|pair| pair[0] != pair[1]).count();
+    let all: usize = symbols.values.par_chunks_exact(symbols.samples).map(of_sensor).sum();
+    all / symbols.sensors().max(1)
 }
 
 /// How often each symbol occurs in the series of one sensor.
@@ -195,16 +224,15 @@ mod tests {
     #[test]
     fn agrees_with_the_definition_however_it_counts() {
         for (levels, samples) in
-            [(2, 63), (4, 64), (5, 1000), (10, 129), (11, 500), (40, 500), (256, 300), (3, 1)]
+            [(2, 63), (4, 64), (5, 1000), (10, 129), (11, 500), (16, 9000), (40, 500), (256, 300), (3, 1)]
         {
             let symbols = random_symbols(19, samples, levels);
             let distances = information_metric(&symbols);
-            let all = [
-                Counting::Planes(BitPlanes::new(&symbols)),
-                Counting::Changes(Changes::new(&symbols)),
-                Counting::Stretches(Stretches::new(&symbols)),
-            ];
-            all.iter().for_each(|counting| assert_eq!(by(counting, &symbols), distances));
+            assert_eq!(by(&Counting::Planes(BitPlanes::new(&symbols)), &symbols), distances);
+            assert_eq!(by(&Counting::Stretches(Stretches::new(&symbols)), &symbols), distances);
+            if levels <= runs::MAX_LEVELS {
+                assert_eq!(by(&Counting::Runs(Runs::new(&symbols)), &symbols), distances);
+            }
             for i in 0..19 {
                 assert_eq!(distances.get(i, i), 0.0);
                 for j in 0..19 {
@@ -217,12 +245,14 @@ mod tests {
     }
 
     #[test]
-    fn symbols_that_rarely_change_are_counted_by_their_changes() {
+    fn symbols_that_rarely_change_are_counted_by_their_runs() {
         let mut symbols = random_symbols(19, 6400, 40);
         assert!(matches!(Counting::fastest(&symbols), Counting::Stretches(_)));
         let slow = |(at, _): (usize, &u8)| symbols.values[at - at % 64];
         symbols.values = symbols.values.iter().enumerate().map(slow).collect();
-        assert!(matches!(Counting::fastest(&symbols), Counting::Changes(_)));
+        symbols.levels = 8;
+        symbols.values.iter_mut().for_each(|symbol| *symbol %= 8);
+        assert!(matches!(Counting::fastest(&symbols), Counting::Runs(_)));
         symbols.levels = 2;
         symbols.values.iter_mut().for_each(|symbol| *symbol %= 2);
         assert!(matches!(Counting::fastest(&symbols), Counting::Planes(_)));

@@ -3,8 +3,8 @@
 //! In: [`Symbols`](super::quantise::Symbols) of M sensors at T times. Out: [`Distances`], M × M, in bits.
 
 mod bit_planes;
-mod changes;
 mod information_metric;
+mod runs;
 mod stretches;
 
 pub use self::information_metric::{Distances, MAX_SENSORS, information_metric};
