@@ -1,9 +1,10 @@
 //! Give a cluster of sensors its motion subspace and its description length (Ma et al. 2007).
 //!
-//! The description length is what it takes to encode what the sensors feel up to a tolerance. Each component of the motion takes
-//! ½ ln(1 + its variance over the tolerance). Each informative root beyond these takes the same of the residual variance: both
-//! are the likelihood of probabilistic principal components (Tipping and Bishop 1999). Each loading takes ½ ln n over n, for n
-//! samples (Schwarz 1978). Clusters of one part share components, so that their union is shorter than both.
+//! The description length is what it takes to encode what the sensors feel up to a tolerance. The motion at a sample takes
+//! ½ ln det(I + Σ c cᵀ / tolerance), for components of variance 1: as much as the roots tell of it that are felt then. Each of these
+//! beyond takes ½ ln(1 + the residual variance over the tolerance). Both are the likelihood of probabilistic principal components
+//! (Tipping and Bishop 1999). Each loading takes ½ ln n over n, for n samples (Schwarz 1978). Clusters of one part share components,
+//! so that their union is shorter than both.
 
 use faer::Mat;
 
@@ -25,6 +26,13 @@ const WEIGHTS: [f64; 2] = [3e-3, 3e-4];
 /// Momentum of these iterations: the least and the largest, and its factors while the residual falls and when it grew.
 const MOMENTUM: [f64; 2] = [0.5, 0.98];
 const PACE: [f64; 2] = [1.1, 0.5];
+/// What a root that is not felt tells of w, as a share of what one tells that is felt: all where the tolerance is the least, since it
+/// is completed as exactly, and next to nothing with noise.
+fn told_by_censored(tolerance: f64) -> f64 {
+    (LEAST_TOLERANCE / tolerance).powi(2)
+}
+/// The least tolerance: what the iterations leave.
+pub(super) const LEAST_TOLERANCE: f64 = 3e-4;
 /// How many times the tolerance the variance of a component is at least.
 const PRESENT: f64 = 20.0;
 
@@ -131,9 +139,9 @@ impl Cluster {
         }
     }
 
-    /// c of the representatives, sensors × k.
-    pub(super) fn loadings(&self) -> &Mat<f64> {
-        &self.loadings
+    /// c of the representatives, sensors × k, for which each component of w has a variance of 1.
+    pub(super) fn whitened_loadings(&self) -> Mat<f64> {
+        whitened(&self.loadings, &self.motion)
     }
 
     /// k, the rank of the motion subspace.
@@ -227,14 +235,16 @@ impl Cluster {
         let [residual, freedom] = plain.residual(loadings.as_ref(), motion);
         let components = components(loadings, motion);
         (self.residual, self.freedom, self.components) = (residual, freedom, components);
-        self.description_length = self.description_length(felt.tolerance);
+        self.description_length = self.description_length(&own, felt.tolerance);
     }
 
-    fn description_length(&self, tolerance: f64) -> f64 {
+    /// In: the roots of the representatives.
+    fn description_length(&self, roots: &Roots, tolerance: f64) -> f64 {
         let (sensors, samples) = (self.sensors.len() as f64, self.motion.nrows() as f64);
         // The motion may be learned from a share of the sensors only.
         let ratio = sensors / self.representatives.len() as f64;
-        let motion: f64 = self.components.iter().map(|variance| (ratio * variance / tolerance).ln_1p()).sum();
+        let motion =
+            log_determinant(roots, &self.whitened_loadings(), ratio / tolerance, told_by_censored(tolerance));
         let residual =
             if self.freedom > 0.0 { (self.residual / self.freedom / tolerance).ln_1p() } else { 0.0 };
         let loadings = sensors * self.rank() as f64 * samples.ln() / samples;
@@ -255,6 +265,55 @@ fn complete(completed: &mut Mat<f64>, roots: &Roots, loadings: &Mat<f64>, motion
             }
         }
     }
+}
+
+/// ln det(I + scale · Σ c cᵀ cov(w)) on average over samples, where the sum is over the roots at a sample, and one that is not felt
+/// counts `censored`. In: the roots of some sensors, and their c, for which each component of w has a variance of 1.
+fn log_determinant(roots: &Roots, whitened: &Mat<f64>, scale: f64, censored: f64) -> f64 {
+    let k = whitened.ncols();
+    let row = |sensor| std::array::from_fn(|at| if at < k { whitened[(sensor, at)] } else { 0.0 });
+    let rows: Vec<[f64; MAX_RANK]> = (0..whitened.nrows()).map(row).collect();
+    let of_sample = |t: usize| {
+        let mut matrix = [[0.0; MAX_RANK]; MAX_RANK];
+        for (sensor, c) in rows.iter().enumerate() {
+            let is_felt = roots.values[(t, sensor)] >= roots.thresholds[t];
+            let weight = if is_felt { scale } else { scale * censored };
+            for (i, row) in matrix.iter_mut().enumerate() {
+                (0..=i).for_each(|j| row[j] += weight * c[i] * c[j]);
+            }
+        }
+        log_determinant_with_identity(matrix)
+    };
+    (0..roots.samples()).map(of_sample).sum::<f64>() / roots.samples() as f64
+}
+
+/// ln det(I + A) of a symmetric A, of which the lower triangle is given, by its Cholesky factor.
+fn log_determinant_with_identity(mut matrix: [[f64; MAX_RANK]; MAX_RANK]) -> f64 {
+    let mut product = 1.0;
+    for j in 0..MAX_RANK {
+        let pivot = 1.0 + matrix[j][j] - (0..j).map(|m| matrix[j][m] * matrix[j][m]).sum::<f64>();
+        product *= pivot;
+        for i in j + 1..MAX_RANK {
+            let rest = matrix[i][j] - (0..j).map(|m| matrix[i][m] * matrix[j][m]).sum::<f64>();
+            matrix[i][j] = rest / pivot.sqrt();
+        }
+    }
+    product.ln()
+}
+
+/// c of the same c · w, for which the components of w are uncorrelated, and each has a variance of 1.
+fn whitened(loadings: &Mat<f64>, motion: &Mat<f64>) -> Mat<f64> {
+    /// Of the mean square of w.
+    const RIDGE: f64 = 1e-12;
+    let k = loadings.ncols();
+    let scatter = product(motion.transpose(), motion.as_ref());
+    let ridge = f64::MIN_POSITIVE + RIDGE * (0..k).map(|at| scatter[(at, at)]).sum::<f64>();
+    let covariance = nalgebra::DMatrix::from_fn(k, k, |i, j| {
+        (scatter[(i.max(j), i.min(j))] + if i == j { ridge } else { 0.0 }) / motion.nrows() as f64
+    });
+    let Some(factor) = covariance.cholesky() else { return Mat::zeros(loadings.nrows(), k) };
+    let factor = factor.unpack();
+    product(loadings.as_ref(), Mat::from_fn(k, k, |i, j| factor[(i, j)]).as_ref())
 }
 
 /// Variances along the principal axes of c wᵀ.
@@ -281,4 +340,36 @@ fn solved(squares: &Mat<f64>, products: &Mat<f64>) -> Mat<f64> {
     let Some(factor) = matrix.cholesky() else { return Mat::zeros(products.nrows(), k) };
     let inverse = factor.inverse();
     product(products.as_ref(), Mat::from_fn(k, k, |i, j| inverse[(i, j)]).as_ref())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_felt_tells_more_of_the_motion() {
+        // Two sensors of one component, of which the second is felt at one of two samples.
+        let values = Mat::from_fn(2, 2, |t, sensor| if (t, sensor) == (1, 1) { 0.0 } else { 1.0 });
+        let roots = Roots { values, thresholds: vec![0.5; 2], signed: false };
+        let found = log_determinant(&roots, &Mat::from_fn(2, 1, |sensor, _| [1.0, 2.0][sensor]), 10.0, 0.02);
+        let expected = ((1.0_f64 + 10.0 * 5.0).ln() + (1.0_f64 + 10.0 * (1.0 + 0.02 * 4.0)).ln()) / 2.0;
+        assert!((found - expected).abs() < 1e-12, "{found} {expected}");
+        // A = x xᵀ + 3 y yᵀ for orthogonal x and y.
+        let (x, y) = ([1.0, 2.0, 0.0, 0.0, 0.0, 0.0], [2.0, -1.0, 0.0, 0.0, 1.0, 0.0]);
+        let matrix = std::array::from_fn(|i| std::array::from_fn(|j| x[i] * x[j] + 3.0 * y[i] * y[j]));
+        assert!((log_determinant_with_identity(matrix) - (6.0_f64 * 19.0).ln()).abs() < 1e-12);
+    }
+
+    #[test]
+    fn whitened_loadings_give_the_same_roots() {
+        let loadings = Mat::from_fn(5, 2, |i, j| (i as f64 + 1.0) * (j as f64 - 0.3));
+        let motion = Mat::from_fn(50, 2, |t, j| ((t * (j + 2)) as f64).sin() * (j as f64 + 0.5));
+        let found = whitened(&loadings, &motion);
+        let covariance = |loadings: &Mat<f64>, middle: Mat<f64>| {
+            product(product(loadings.as_ref(), middle.as_ref()).as_ref(), loadings.transpose())
+        };
+        let scatter = product(motion.transpose(), motion.as_ref()) * faer::Scale(1.0 / 50.0);
+        let error = covariance(&found, Mat::identity(2, 2)) - covariance(&loadings, scatter);
+        assert!(error.norm_max() < 1e-9);
+    }
 }

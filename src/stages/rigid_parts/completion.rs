@@ -253,7 +253,7 @@ mod tests {
         let felt = |t, sensor| velocities[(t, sensor)].max(if signed { f64::NEG_INFINITY } else { 0.0 });
         let values = Mat::from_fn(velocities.nrows(), velocities.ncols(), felt);
         let sizes = vec![1.0; velocities.nrows()];
-        Roots { values, thresholds: sizes.clone(), signed }.equalised(&sizes)
+        Roots { values, thresholds: sizes.clone(), signed }.equalised(&sizes, 0.0)
     }
 
     #[test]

@@ -98,12 +98,44 @@ impl Roots {
 
     /// w at all samples from given c of these sensors, sensors × k: T × k, by sample.
     pub(super) fn motion(&self, loadings: &Mat<f64>) -> Vec<f64> {
-        let k = loadings.ncols();
-        let mut motion = Mat::zeros(self.samples(), k);
+        by_sample(&self.motion_of(loadings))
+    }
+
+    /// The most likely w at all samples from given c, as [`motion`](Self::motion) gives it: w is standard normal, and the errors of
+    /// roots have this standard deviation.
+    pub(super) fn likely_motion(&self, loadings: &Mat<f64>, deviation: f64) -> Vec<f64> {
+        let (sensors, k) = loadings.shape();
+        // What is known of w is one more observation of 0 for each component. It counts where it is predicted to exceed its root, as
+        // one of ±w always is; with signs, each counts.
+        let more = if self.signed { k } else { 2 * k };
+        let with = |i: usize, at: usize| match (i - sensors.min(i), at) {
+            _ if i < sensors => loadings[(i, at)],
+            (more, at) if more == at => deviation,
+            (more, at) if more == at + k => -deviation,
+            _ => 0.0,
+        };
+        let values =
+            Mat::from_fn(
+                self.samples(),
+                sensors + more,
+                |t, i| {
+                    if i < sensors { self.values[(t, i)] } else { 0.0 }
+                },
+            );
+        let roots = Self { values, thresholds: self.thresholds.clone(), signed: self.signed };
+        by_sample(&roots.motion_of(&Mat::from_fn(sensors + more, k, with)))
+    }
+
+    fn motion_of(&self, loadings: &Mat<f64>) -> Mat<f64> {
+        let mut motion = Mat::zeros(self.samples(), loadings.ncols());
         let als = Als::new(self.values.as_ref(), &self.thresholds);
         (0..ITERATIONS).for_each(|_| als.update_motion(loadings.as_ref(), &mut motion));
-        (0..self.samples()).flat_map(|t| (0..k).map(move |at| (t, at))).map(|at| motion[at]).collect()
+        motion
     }
+}
+
+fn by_sample(motion: &Mat<f64>) -> Vec<f64> {
+    (0..motion.nrows()).flat_map(|t| (0..motion.ncols()).map(move |at| motion[(t, at)])).collect()
 }
 
 /// So many principal axes of some columns, or as many as there are, by descending variance.
@@ -126,4 +158,22 @@ pub(super) fn orthonormalise(loadings: &mut Mat<f64>, motion: &mut Mat<f64>) {
     };
     *loadings = product(loadings.as_ref(), rotation(&f64::recip).as_ref());
     *motion = product(motion.as_ref(), rotation(&|span| span).as_ref());
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_likely_motion_is_that_of_a_ridge_regression() {
+        // One component, two sensors: w = c · r / (c · c + deviation²).
+        let values = Mat::from_fn(1, 2, |_, sensor| [1.0, 3.0][sensor]);
+        let roots = Roots { values, thresholds: vec![0.1], signed: false };
+        let loadings = Mat::from_fn(2, 1, |sensor, _| [0.5, 1.0][sensor]);
+        let found = roots.likely_motion(&loadings, 2.0);
+        assert!((found[0] - 3.5 / (1.25 + 4.0)).abs() < 1e-6, "{found:?}");
+        assert!((roots.likely_motion(&loadings, 0.0)[0] - 3.5 / 1.25).abs() < 1e-6);
+        let signed = Roots { signed: true, thresholds: vec![f64::NEG_INFINITY], ..roots };
+        assert!((signed.likely_motion(&loadings, 2.0)[0] - found[0]).abs() < 1e-6);
+    }
 }

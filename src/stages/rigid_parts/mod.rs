@@ -16,6 +16,7 @@ mod faces;
 mod factorisation;
 #[cfg(test)]
 pub(crate) mod fixtures;
+mod floor;
 mod medians;
 mod parts;
 mod regressions;

@@ -6,16 +6,16 @@
 
 use std::collections::BTreeMap;
 
-use faer::Mat;
 use rayon::prelude::*;
 
 use super::cluster::{Cluster, Felt};
 use super::completion::Completion;
 use super::faces::similar;
+use super::floor::{floors, telling_samples, typical_floor};
 use super::medians::typical_size;
 use super::roots::{Roots, is_signed};
 use super::search::Search;
-use super::subspace::{MotionSubspace, ROTATION_RANK, felt_samples};
+use super::subspace::{Loadings, MotionSubspace, ROTATION_RANK};
 use crate::numerics::partition::named_by_appearance;
 use crate::stages::sense::Tactile;
 
@@ -58,10 +58,17 @@ pub fn rigid_parts(tactile: &Tactile, sensors: &[usize]) -> RigidParts {
     let signed = is_signed(tactile);
     let all: Vec<&[f32]> = tactile.series().collect();
     let some: Vec<&[f32]> = sensors.iter().map(|&sensor| all[sensor]).collect();
-    let samples = felt_samples(&some, MAX_SAMPLES);
-    let every = Roots::at(&all, &samples, signed).normalised();
+    let floors = floors(&all);
+    let samples = telling_samples(
+        &some,
+        &sensors.iter().map(|&sensor| floors[sensor]).collect::<Vec<_>>(),
+        MAX_SAMPLES,
+    );
+    let every = Roots::at(&all, &samples, signed);
+    let floor = typical_floor(&floors, &every.scales());
+    let every = every.normalised();
     let sizes = every.select(sensors).sizes();
-    let every = every.equalised(&sizes);
+    let every = every.equalised(&sizes, floor);
     let roots = every.select_as_they_are(sensors);
     let completion = Completion::new(&roots);
     let felt = Felt { roots, completed: completion.velocities, tolerance: 0.0 };
@@ -101,7 +108,7 @@ pub fn rigid_parts(tactile: &Tactile, sensors: &[usize]) -> RigidParts {
         motions: parts
             .iter()
             .enumerate()
-            .map(|(at, part)| (names[&at], motion(part, &some, &samples, signed)))
+            .map(|(at, part)| (names[&at], motion(part, &some, &samples, floor, signed)))
             .collect(),
         labels: named,
     }
@@ -126,12 +133,12 @@ fn explaining(residuals: &[Vec<f64>], sensor: usize, most: f64) -> Option<usize>
 }
 
 /// The motion of a part at all samples, from what was learned at some.
-fn motion(part: &Cluster, series: &[&[f32]], samples: &[usize], signed: bool) -> MotionSubspace {
+fn motion(part: &Cluster, series: &[&[f32]], samples: &[usize], floor: f64, signed: bool) -> MotionSubspace {
     let series: Vec<&[f32]> = part.representatives.iter().map(|&sensor| series[sensor]).collect();
     let scales = Roots::at(&series, samples, signed).scales();
-    let loadings = part.loadings();
-    let loadings = Mat::from_fn(loadings.nrows(), loadings.ncols(), |i, j| loadings[(i, j)] * scales[i]);
-    MotionSubspace::of_loadings(&series, loadings, signed)
+    let given =
+        Loadings { values: part.whitened_loadings(), scales, deviation: part.variance().sqrt(), floor };
+    MotionSubspace::of_loadings(&series, &given, signed)
 }
 
 #[cfg(test)]

@@ -17,6 +17,9 @@ const FELT: f64 = 0.1;
 /// Share of all absolute pressure from which on negative pressures are signal; less is taken as noise about 0.
 const SIGNED: f64 = 0.01;
 
+/// What is below a threshold, of it: less in single precision, too.
+const BELOW: f64 = 1.0 - 1e-6;
+
 /// Roots of the pressures on some sensors at some samples.
 pub(crate) struct Roots {
     /// Samples × sensors, √Pa, or normalised.
@@ -65,6 +68,29 @@ impl Roots {
         Self::new(self.values, self.signed)
     }
 
+    /// In units of these scales.
+    pub(super) fn scaled(mut self, scales: &[f64]) -> Self {
+        for (sensor, scale) in scales.iter().enumerate() {
+            self.values.col_as_slice_mut(sensor).iter_mut().for_each(|root| *root /= scale);
+        }
+        Self::new(self.values, self.signed)
+    }
+
+    /// A root counts as felt from the floor on; another one only says that c · w is no more than the floor.
+    pub(super) fn with_floor(mut self, floor: f64) -> Self {
+        if self.signed || floor == 0.0 {
+            return self;
+        }
+        self.thresholds.iter_mut().for_each(|least| *least = f64::max(*least, BELOW * floor));
+        for sensor in 0..self.sensors() {
+            let roots = self.values.col_as_slice_mut(sensor).iter_mut();
+            for (root, least) in roots.zip(&self.thresholds).filter(|(root, least)| **root < **least) {
+                *root = f64::min(f64::max(*root, BELOW * BELOW * floor), BELOW * least);
+            }
+        }
+        self
+    }
+
     /// The root mean square of each sensor.
     pub(super) fn scales(&self) -> Vec<f64> {
         let scale = |sensor| {
@@ -90,13 +116,22 @@ impl Roots {
         sizes.into_iter().map(|size| size.max(least)).collect()
     }
 
-    /// Divided by the size at each sample. Every root above 0 counts as felt.
-    pub(super) fn equalised(mut self, sizes: &[f64]) -> Self {
+    /// Divided by the size at each sample. A root above the floor counts as felt; another one only says that c · w is no more than
+    /// the floor.
+    pub(super) fn equalised(mut self, sizes: &[f64], floor: f64) -> Self {
+        let least = f64::from(f32::MIN_POSITIVE);
+        let threshold =
+            |size: &f64| if self.signed { f64::NEG_INFINITY } else { f64::max(BELOW * floor / size, least) };
+        self.thresholds = sizes.iter().map(threshold).collect();
         for sensor in 0..self.sensors() {
             let roots = self.values.col_as_slice_mut(sensor);
-            roots.iter_mut().zip(sizes).for_each(|(root, size)| *root /= size);
+            for ((root, size), threshold) in roots.iter_mut().zip(sizes).zip(&self.thresholds) {
+                *root /= size;
+                if *root < *threshold && floor > 0.0 {
+                    *root = BELOW * threshold;
+                }
+            }
         }
-        self.thresholds.fill(if self.signed { f64::NEG_INFINITY } else { f64::from(f32::MIN_POSITIVE) });
         self
     }
 

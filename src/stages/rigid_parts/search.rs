@@ -8,7 +8,7 @@ use faer::Mat;
 use kodama::Method;
 use rayon::prelude::*;
 
-use super::cluster::{Cluster, Felt};
+use super::cluster::{Cluster, Felt, LEAST_TOLERANCE};
 use super::factorisation::MAX_RANK;
 use crate::numerics::linkage::largest_clusters;
 
@@ -29,8 +29,8 @@ const EXPLAINED: f64 = 5.0;
 const MIXED: f64 = 10.0;
 /// The same of a sensor that is in no cluster. With noise it is more than any residual.
 const LEFT: f64 = 30.0;
-/// The tolerance, the residual variance that is encoded as noise is: the least, which is what the iterations leave, and the largest.
-const TOLERANCE: [f64; 2] = [3e-4, 5e-2];
+/// The tolerance, the residual variance that is encoded as noise is: the least and the largest.
+const TOLERANCE: [f64; 2] = [LEAST_TOLERANCE, 5e-2];
 /// Fewest sensors of a cluster.
 const MIN_CLUSTER: usize = 4;
 /// Most iterations in which sensors are assigned, and of merging and assigning.

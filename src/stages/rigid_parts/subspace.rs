@@ -4,7 +4,7 @@ use faer::Mat;
 use rayon::prelude::*;
 
 use super::faces::faces;
-use super::factorisation::{Fit, MAX_RANK, orthonormalise};
+use super::factorisation::{Fit, MAX_RANK};
 use super::roots::Roots;
 use super::stratified::stratified;
 
@@ -28,6 +28,18 @@ pub(crate) struct MotionSubspace {
     pub basis: Vec<f64>,
 }
 
+/// Loadings c of sensors, and what is known of their roots.
+pub(super) struct Loadings {
+    /// Sensors × k, of roots in units of the scales. Each component of w has a variance of 1.
+    pub values: Mat<f64>,
+    /// The unit of each sensor's roots, √Pa.
+    pub scales: Vec<f64>,
+    /// Standard deviation of what c · w leaves of a root, in these units.
+    pub deviation: f64,
+    /// The least root that is felt, in these units.
+    pub floor: f64,
+}
+
 impl MotionSubspace {
     /// Of the sensors of a cluster, from their series of T pressures, which must be finite.
     ///
@@ -42,23 +54,31 @@ impl MotionSubspace {
         Self::from_orthonormal(&series, fit.loadings(), signed)
     }
 
-    /// From given loadings c of sensors, sensors × k, and their series of T pressures, which must be finite.
-    pub(super) fn of_loadings(series: &[&[f32]], mut loadings: Mat<f64>, signed: bool) -> Self {
-        let k = loadings.ncols();
-        orthonormalise(&mut loadings, &mut Mat::zeros(0, k));
-        Self::from_orthonormal(series, &loadings, signed)
+    /// From given loadings c of sensors, and their series of T pressures, which must be finite.
+    pub(super) fn of_loadings(series: &[&[f32]], given: &Loadings, signed: bool) -> Self {
+        let k = given.values.ncols();
+        Self::from_roots(series, k, &|samples| {
+            let roots = Roots::at(series, samples, signed).scaled(&given.scales).with_floor(given.floor);
+            roots.likely_motion(&given.values, given.deviation)
+        })
     }
 
-    /// The same, with c whose columns are orthonormal.
+    /// From loadings c whose columns are orthonormal.
     fn from_orthonormal(series: &[&[f32]], loadings: &Mat<f64>, signed: bool) -> Self {
+        Self::from_roots(series, loadings.ncols(), &|samples| {
+            Roots::at(series, samples, signed).motion(loadings)
+        })
+    }
+
+    /// Of rank k, where `motion` gives w at some samples.
+    fn from_roots(series: &[&[f32]], k: usize, motion: &(dyn Fn(&[usize]) -> Vec<f64> + Sync)) -> Self {
         /// Samples whose roots are in memory at once.
         const BLOCK: usize = 240;
         let samples = series.first().map_or(0, |series| series.len());
-        let k = loadings.ncols();
         let mut basis = vec![0.0; samples * k];
         basis.par_chunks_mut(BLOCK * k).enumerate().for_each(|(block, values)| {
             let samples: Vec<usize> = (block * BLOCK..block * BLOCK + values.len() / k).collect();
-            values.copy_from_slice(&Roots::at(series, &samples, signed).motion(loadings));
+            values.copy_from_slice(&motion(&samples));
         });
         Self { rank: k, basis }
     }
@@ -104,7 +124,7 @@ impl MotionSubspace {
 }
 
 /// At most so many samples, spread over those at which a sensor feels anything.
-pub(super) fn felt_samples(series: &[&[f32]], most: usize) -> Vec<usize> {
+fn felt_samples(series: &[&[f32]], most: usize) -> Vec<usize> {
     let samples = series.first().map_or(0, |series| series.len());
     let felt: Vec<usize> =
         (0..samples).into_par_iter().filter(|t| series.iter().any(|series| series[*t] != 0.0)).collect();

@@ -75,7 +75,7 @@ fn the_union_of_two_parts_has_a_longer_description_than_both() {
     let samples: Vec<usize> = stratified(tactile.samples, MAX_SAMPLES).collect();
     let roots = Roots::at(&series, &samples, false).normalised();
     let sizes = roots.sizes();
-    let roots = roots.equalised(&sizes);
+    let roots = roots.equalised(&sizes, 0.0);
     let completed = Completion::new(&roots).velocities;
     let felt = Felt { roots, completed, tolerance: 3e-4 };
     let own = |parts: &[usize]| {

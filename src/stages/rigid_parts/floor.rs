@@ -1,0 +1,70 @@
+//! Find the floor below which sensors feel nothing, and the samples at which most is felt above it.
+//!
+//! Where noise was taken off, or a sensor has a dead band, a pressure of 0 says only that the root is below a floor. The least
+//! pressure that a sensor ever has tells its floor. Of sensors without one, it is next to nothing.
+
+use rayon::prelude::*;
+
+use super::stratified::stratified;
+
+/// The root of the least pressure of each sensor, of any sign, that is other than 0; 0 if all are 0.
+pub(super) fn floors(series: &[&[f32]]) -> Vec<f64> {
+    let least = |series: &&[f32]| {
+        let sizes = series.iter().map(|pressure| pressure.abs()).filter(|size| *size > 0.0);
+        f64::from(sizes.reduce(f32::min).unwrap_or(0.0)).sqrt()
+    };
+    series.par_iter().map(least).collect()
+}
+
+/// The median floor of the sensors that feel anything, in units of these scales; 0 of none.
+pub(super) fn typical_floor(floors: &[f64], scales: &[f64]) -> f64 {
+    let both = floors.iter().zip(scales).filter(|(_, scale)| **scale > 0.0);
+    let mut shares: Vec<f64> = both.map(|(floor, scale)| floor / scale).collect();
+    shares.sort_by(f64::total_cmp);
+    shares.get(shares.len() / 2).copied().unwrap_or(0.0)
+}
+
+/// At most so many samples, spread over those at which the root mean square of all roots is above the floor. In: pressures, and the
+/// floor of each sensor.
+pub(super) fn telling_samples(series: &[&[f32]], floors: &[f64], most: usize) -> Vec<usize> {
+    let samples = series.first().map_or(0, |series| series.len());
+    let mean = |series: &&[f32]| {
+        series.iter().map(|pressure| f64::from(pressure.abs())).sum::<f64>() / samples as f64
+    };
+    let means: Vec<f64> = series.par_iter().map(mean).collect();
+    let scales: Vec<f64> = means.iter().map(|mean| mean.sqrt()).collect();
+    let least = typical_floor(floors, &scales).powi(2) * series.len() as f64;
+    let size = |t: usize| -> f64 {
+        let own = series.iter().zip(&means).filter(|(_, mean)| **mean > 0.0);
+        own.map(|(series, mean)| f64::from(series[t].abs()) / mean).sum()
+    };
+    let above =
+        |least: f64| -> Vec<usize> { (0..samples).into_par_iter().filter(|t| size(*t) > least).collect() };
+    let telling = above(least);
+    // Sensors with few levels may feel nothing above their least.
+    let telling = if telling.is_empty() { above(0.0) } else { telling };
+    stratified(telling.len(), most).map(|at| telling[at]).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quiet_samples_are_left_out_only_where_there_is_a_floor() {
+        let touch =
+            |t: u16, least: f32| Some((f32::from(t) / 50.0).powi(2)).filter(|p| *p >= least).unwrap_or(0.0);
+        let series = |least: f32| (1..=100).map(|t| touch(t, least)).collect::<Vec<f32>>();
+        let found = |one: &[f32], other: &[f32]| {
+            let own = floors(&[one, other]);
+            let count = telling_samples(&[one, other], &own, 1000).len();
+            (own, count)
+        };
+        let smooth = series(0.0);
+        assert!(found(&smooth, &smooth).0[0] < 0.021 && found(&smooth, &smooth).1 >= 99);
+        // Sensors that feel from samples 50 and 75 on. Both roots are above the floors, in units of each, from sample 83 on.
+        assert_eq!(found(&series(1.0), &series(2.25)), (vec![1.0, 1.5], 18));
+        assert_eq!((typical_floor(&[], &[]), typical_floor(&[1.0], &[0.0])), (0.0, 0.0));
+        assert_eq!(floors(&[&[0.0, 0.0], &[-4.0, 0.0]]), [0.0, 2.0]);
+    }
+}
