@@ -101,27 +101,24 @@ fn by(counting: &Counting, symbols: &Symbols) -> Distances {
         metric_of_counts(joint, &of_marginals[i], &of_marginals[j], &logarithms)
     };
     let of_tile = |(joint, counter): &mut (Vec<u32>, Counter), tile: &(usize, usize)| -> Vec<f64> {
+        let mut by_pairs = |count: &dyn Fn(usize, usize, &mut [u32])| {
+            let of_pair = |(i, j)| {
+                count(i, j, joint);
+                metric(i, j, joint)
+            };
+            pairs(tile).map(of_pair).collect()
+        };
         match counting {
             Counting::Planes(planes) => {
                 let counted = planes.count(tile.0, tile.1);
-                let of_pair = |(i, j)| {
-                    counted.joint(i, j, &marginals, joint);
-                    metric(i, j, joint)
-                };
-                pairs(tile).map(of_pair).collect()
+                by_pairs(&|i, j, joint| counted.joint(i, j, &marginals, joint))
             }
             Counting::Runs(runs) => {
                 let (i, others) = (tile.0, columns(tile.0, tile.1));
                 let counts = runs.count(i, others.clone(), counter);
                 others.zip(counts).map(|(j, joint)| metric(i, j, joint)).collect()
             }
-            Counting::Stretches(stretches) => {
-                let of_pair = |(i, j)| {
-                    stretches.joint(i, j, joint);
-                    metric(i, j, joint)
-                };
-                pairs(tile).map(of_pair).collect()
-            }
+            Counting::Stretches(stretches) => by_pairs(&|i, j, joint| stretches.joint(i, j, joint)),
         }
     };
     let scratch = || (vec![0; levels * levels], Counter::default());

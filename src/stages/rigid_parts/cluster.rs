@@ -7,6 +7,7 @@
 //! so that their union is shorter than both.
 
 use faer::Mat;
+use nalgebra::{DMatrix, SMatrix};
 
 use super::als::Als;
 use super::factorisation::{MAX_RANK, principal_axes};
@@ -26,11 +27,6 @@ const WEIGHTS: [f64; 2] = [3e-3, 3e-4];
 /// Momentum of these iterations: the least and the largest, and its factors while the residual falls and when it grew.
 const MOMENTUM: [f64; 2] = [0.5, 0.98];
 const PACE: [f64; 2] = [1.1, 0.5];
-/// What a root that is not felt tells of w, as a share of what one tells that is felt: all where the tolerance is the least, since it
-/// is completed as exactly, and next to nothing with noise.
-fn told_by_censored(tolerance: f64) -> f64 {
-    (LEAST_TOLERANCE / tolerance).powi(2)
-}
 /// The least tolerance: what the iterations leave.
 pub(super) const LEAST_TOLERANCE: f64 = 3e-4;
 /// How many times the tolerance the variance of a component is at least.
@@ -233,18 +229,17 @@ impl Cluster {
             complete(completed, &own, loadings, motion);
         }
         let [residual, freedom] = plain.residual(loadings.as_ref(), motion);
-        let components = components(loadings, motion);
-        (self.residual, self.freedom, self.components) = (residual, freedom, components);
-        self.description_length = self.description_length(&own, felt.tolerance);
+        let whitened = whitened(loadings, motion);
+        (self.residual, self.freedom, self.components) = (residual, freedom, components(&whitened));
+        self.description_length = self.description_length(&own, &whitened, felt.tolerance);
     }
 
-    /// In: the roots of the representatives.
-    fn description_length(&self, roots: &Roots, tolerance: f64) -> f64 {
+    /// In: the roots of the representatives, and their c for which each component of w has a variance of 1.
+    fn description_length(&self, roots: &Roots, whitened: &Mat<f64>, tolerance: f64) -> f64 {
         let (sensors, samples) = (self.sensors.len() as f64, self.motion.nrows() as f64);
         // The motion may be learned from a share of the sensors only.
         let ratio = sensors / self.representatives.len() as f64;
-        let motion =
-            log_determinant(roots, &self.whitened_loadings(), ratio / tolerance, told_by_censored(tolerance));
+        let motion = log_determinant(roots, whitened, ratio / tolerance, told_by_censored(tolerance));
         let residual =
             if self.freedom > 0.0 { (self.residual / self.freedom / tolerance).ln_1p() } else { 0.0 };
         let loadings = sensors * self.rank() as f64 * samples.ln() / samples;
@@ -267,6 +262,12 @@ fn complete(completed: &mut Mat<f64>, roots: &Roots, loadings: &Mat<f64>, motion
     }
 }
 
+/// What a root that is not felt tells of w, as a share of what one tells that is felt: all where the tolerance is the least, since it
+/// is completed as exactly, and next to nothing with noise.
+fn told_by_censored(tolerance: f64) -> f64 {
+    (LEAST_TOLERANCE / tolerance).powi(2)
+}
+
 /// ln det(I + scale · Σ c cᵀ cov(w)) on average over samples, where the sum is over the roots at a sample, and one that is not felt
 /// counts `censored`. In: the roots of some sensors, and their c, for which each component of w has a variance of 1.
 fn log_determinant(roots: &Roots, whitened: &Mat<f64>, scale: f64, censored: f64) -> f64 {
@@ -287,18 +288,11 @@ fn log_determinant(roots: &Roots, whitened: &Mat<f64>, scale: f64, censored: f64
     (0..roots.samples()).map(of_sample).sum::<f64>() / roots.samples() as f64
 }
 
-/// ln det(I + A) of a symmetric A, of which the lower triangle is given, by its Cholesky factor.
-fn log_determinant_with_identity(mut matrix: [[f64; MAX_RANK]; MAX_RANK]) -> f64 {
-    let mut product = 1.0;
-    for j in 0..MAX_RANK {
-        let pivot = 1.0 + matrix[j][j] - (0..j).map(|m| matrix[j][m] * matrix[j][m]).sum::<f64>();
-        product *= pivot;
-        for i in j + 1..MAX_RANK {
-            let rest = matrix[i][j] - (0..j).map(|m| matrix[i][m] * matrix[j][m]).sum::<f64>();
-            matrix[i][j] = rest / pivot.sqrt();
-        }
-    }
-    product.ln()
+/// ln det(I + A) of a positive semidefinite A, of which the lower triangle is given.
+fn log_determinant_with_identity(matrix: [[f64; MAX_RANK]; MAX_RANK]) -> f64 {
+    let matrix =
+        SMatrix::identity() + SMatrix::<f64, MAX_RANK, MAX_RANK>::from_fn(|i, j| matrix[i.max(j)][i.min(j)]);
+    matrix.cholesky().map_or(f64::INFINITY, |factor| factor.ln_determinant())
 }
 
 /// c of the same c · w, for which the components of w are uncorrelated, and each has a variance of 1.
@@ -308,7 +302,7 @@ fn whitened(loadings: &Mat<f64>, motion: &Mat<f64>) -> Mat<f64> {
     let k = loadings.ncols();
     let scatter = product(motion.transpose(), motion.as_ref());
     let ridge = f64::MIN_POSITIVE + RIDGE * (0..k).map(|at| scatter[(at, at)]).sum::<f64>();
-    let covariance = nalgebra::DMatrix::from_fn(k, k, |i, j| {
+    let covariance = DMatrix::from_fn(k, k, |i, j| {
         (scatter[(i.max(j), i.min(j))] + if i == j { ridge } else { 0.0 }) / motion.nrows() as f64
     });
     let Some(factor) = covariance.cholesky() else { return Mat::zeros(loadings.nrows(), k) };
@@ -316,16 +310,10 @@ fn whitened(loadings: &Mat<f64>, motion: &Mat<f64>) -> Mat<f64> {
     product(loadings.as_ref(), Mat::from_fn(k, k, |i, j| factor[(i, j)]).as_ref())
 }
 
-/// Variances along the principal axes of c wᵀ.
-fn components(loadings: &Mat<f64>, motion: &Mat<f64>) -> Vec<f64> {
-    let k = loadings.ncols();
-    let own = product(loadings.transpose(), loadings.as_ref());
-    let Ok(eigen) = largest(own.as_ref(), k) else { return Vec::new() };
-    let half = Mat::from_fn(k, k, |row, at| eigen.vectors[(row, at)] * eigen.values[at].max(0.0).sqrt());
-    let scatter = product(motion.transpose(), motion.as_ref());
-    let both = product(product(half.transpose(), scatter.as_ref()).as_ref(), half.as_ref());
-    let both = Mat::from_fn(k, k, |i, j| both[(i.max(j), i.min(j))] / motion.nrows() as f64);
-    largest(both.as_ref(), k)
+/// Variances along the principal axes of c wᵀ, from c for which each component of w has a variance of 1.
+fn components(whitened: &Mat<f64>) -> Vec<f64> {
+    let squares = product(whitened.transpose(), whitened.as_ref());
+    largest(squares.as_ref(), whitened.ncols())
         .map_or_else(|_| Vec::new(), |eigen| eigen.values.iter().map(|value| value.max(0.0)).collect())
 }
 
@@ -336,7 +324,7 @@ fn solved(squares: &Mat<f64>, products: &Mat<f64>) -> Mat<f64> {
     let k = squares.nrows();
     let trace: f64 = (0..k).map(|at| squares[(at, at)]).sum();
     let ridge = RIDGE * trace / k as f64 + f64::MIN_POSITIVE;
-    let matrix = nalgebra::DMatrix::from_fn(k, k, |i, j| squares[(i, j)] + if i == j { ridge } else { 0.0 });
+    let matrix = DMatrix::from_fn(k, k, |i, j| squares[(i, j)] + if i == j { ridge } else { 0.0 });
     let Some(factor) = matrix.cholesky() else { return Mat::zeros(products.nrows(), k) };
     let inverse = factor.inverse();
     product(products.as_ref(), Mat::from_fn(k, k, |i, j| inverse[(i, j)]).as_ref())

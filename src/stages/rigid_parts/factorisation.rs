@@ -107,12 +107,12 @@ impl Roots {
         let (sensors, k) = loadings.shape();
         // What is known of w is one more observation of 0 for each component. It counts where it is predicted to exceed its root, as
         // one of ±w always is; with signs, each counts.
-        let more = if self.signed { k } else { 2 * k };
-        let with = |i: usize, at: usize| match (i - sensors.min(i), at) {
-            _ if i < sensors => loadings[(i, at)],
-            (more, at) if more == at => deviation,
-            (more, at) if more == at + k => -deviation,
-            _ => 0.0,
+        let deviations: &[f64] = if self.signed { &[deviation] } else { &[deviation, -deviation] };
+        let more = k * deviations.len();
+        let with = |i: usize, at: usize| match i.checked_sub(sensors) {
+            None => loadings[(i, at)],
+            Some(more) if more % k == at => deviations[more / k],
+            Some(_) => 0.0,
         };
         let values =
             Mat::from_fn(

@@ -5,7 +5,9 @@
 
 use rayon::prelude::*;
 
+use super::medians::median;
 use super::stratified::stratified;
+use super::subspace::felt_samples;
 
 /// The root of the least pressure of each sensor, of any sign, that is other than 0; 0 if all are 0.
 pub(super) fn floors(series: &[&[f32]]) -> Vec<f64> {
@@ -19,9 +21,7 @@ pub(super) fn floors(series: &[&[f32]]) -> Vec<f64> {
 /// The median floor of the sensors that feel anything, in units of these scales; 0 of none.
 pub(super) fn typical_floor(floors: &[f64], scales: &[f64]) -> f64 {
     let both = floors.iter().zip(scales).filter(|(_, scale)| **scale > 0.0);
-    let mut shares: Vec<f64> = both.map(|(floor, scale)| floor / scale).collect();
-    shares.sort_by(f64::total_cmp);
-    shares.get(shares.len() / 2).copied().unwrap_or(0.0)
+    median(both.map(|(floor, scale)| floor / scale).collect())
 }
 
 /// At most so many samples, spread over those at which the root mean square of all roots is above the floor. In: pressures, and the
@@ -38,11 +38,11 @@ pub(super) fn telling_samples(series: &[&[f32]], floors: &[f64], most: usize) ->
         let own = series.iter().zip(&means).filter(|(_, mean)| **mean > 0.0);
         own.map(|(series, mean)| f64::from(series[t].abs()) / mean).sum()
     };
-    let above =
-        |least: f64| -> Vec<usize> { (0..samples).into_par_iter().filter(|t| size(*t) > least).collect() };
-    let telling = above(least);
+    let telling: Vec<usize> = (0..samples).into_par_iter().filter(|t| size(*t) > least).collect();
     // Sensors with few levels may feel nothing above their least.
-    let telling = if telling.is_empty() { above(0.0) } else { telling };
+    if telling.is_empty() {
+        return felt_samples(series, most);
+    }
     stratified(telling.len(), most).map(|at| telling[at]).collect()
 }
 

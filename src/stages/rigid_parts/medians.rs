@@ -1,4 +1,10 @@
-//! Say what cluster size is typical by its median, which outliers do not change.
+//! Say what is typical by the median, which outliers do not change.
+
+/// The median, of an even number the upper one; 0 of none.
+pub(super) fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(0.0)
+}
 
 /// The size of the cluster that the median sensor is in: the median of sizes, each counted once for each of its sensors.
 pub(crate) fn typical_size(mut sizes: Vec<usize>) -> usize {

@@ -65,8 +65,9 @@ pub fn rigid_parts(tactile: &Tactile, sensors: &[usize]) -> RigidParts {
         MAX_SAMPLES,
     );
     let every = Roots::at(&all, &samples, signed);
-    let floor = typical_floor(&floors, &every.scales());
-    let every = every.normalised();
+    let scales = every.scales();
+    let floor = typical_floor(&floors, &scales);
+    let every = every.scaled(&scales);
     let sizes = every.select(sensors).sizes();
     let every = every.equalised(&sizes, floor);
     let roots = every.select_as_they_are(sensors);

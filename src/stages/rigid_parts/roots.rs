@@ -9,6 +9,7 @@ use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, MatRef, Par};
 use rayon::prelude::*;
 
+use super::medians::median;
 use crate::stages::sense::Tactile;
 
 /// Share of the largest root at a sample from which on a sensor feels something. A smaller root only says that c · w is no
@@ -60,17 +61,9 @@ impl Roots {
         Self::new(columns(&self.values, sensors), self.signed)
     }
 
-    /// Divided by the root mean square of each sensor, where it feels anything.
-    pub(crate) fn normalised(mut self) -> Self {
-        for (sensor, scale) in self.scales().into_iter().enumerate().filter(|(_, scale)| *scale > 0.0) {
-            self.values.col_as_slice_mut(sensor).iter_mut().for_each(|root| *root /= scale);
-        }
-        Self::new(self.values, self.signed)
-    }
-
-    /// In units of these scales.
+    /// In units of these scales, where they are above 0.
     pub(super) fn scaled(mut self, scales: &[f64]) -> Self {
-        for (sensor, scale) in scales.iter().enumerate() {
+        for (sensor, scale) in scales.iter().enumerate().filter(|(_, scale)| **scale > 0.0) {
             self.values.col_as_slice_mut(sensor).iter_mut().for_each(|root| *root /= scale);
         }
         Self::new(self.values, self.signed)
@@ -83,10 +76,9 @@ impl Roots {
         }
         self.thresholds.iter_mut().for_each(|least| *least = f64::max(*least, BELOW * floor));
         for sensor in 0..self.sensors() {
+            // What is felt is above this, too.
             let roots = self.values.col_as_slice_mut(sensor).iter_mut();
-            for (root, least) in roots.zip(&self.thresholds).filter(|(root, least)| **root < **least) {
-                *root = f64::min(f64::max(*root, BELOW * BELOW * floor), BELOW * least);
-            }
+            roots.for_each(|root| *root = f64::max(*root, BELOW * BELOW * floor));
         }
         self
     }
@@ -110,9 +102,7 @@ impl Roots {
             sizes.iter_mut().zip(roots).for_each(|(size, root)| *size += root * root);
         }
         sizes.iter_mut().for_each(|size| *size = (*size / self.sensors() as f64).sqrt());
-        let mut order = sizes.clone();
-        order.sort_by(f64::total_cmp);
-        let least = f64::max(f64::MIN_POSITIVE, LEAST * order[order.len() / 2]);
+        let least = f64::max(f64::MIN_POSITIVE, LEAST * median(sizes.clone()));
         sizes.into_iter().map(|size| size.max(least)).collect()
     }
 

@@ -10,6 +10,7 @@ use rayon::prelude::*;
 
 use super::cluster::{Cluster, Felt, LEAST_TOLERANCE};
 use super::factorisation::MAX_RANK;
+use super::medians::median;
 use crate::numerics::linkage::largest_clusters;
 
 /// Sensors of a seed cluster: the fewest, and the most. Others wait until clusters have grown.
@@ -251,10 +252,4 @@ impl Search {
 /// The first of the smallest numbers, and its place.
 fn smallest(values: impl Iterator<Item = f64>) -> Option<(usize, f64)> {
     values.enumerate().reduce(|best, other| if other.1 < best.1 { other } else { best })
-}
-
-/// The median; 0 of none.
-fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied().unwrap_or(0.0)
 }

@@ -124,7 +124,7 @@ impl MotionSubspace {
 }
 
 /// At most so many samples, spread over those at which a sensor feels anything.
-fn felt_samples(series: &[&[f32]], most: usize) -> Vec<usize> {
+pub(super) fn felt_samples(series: &[&[f32]], most: usize) -> Vec<usize> {
     let samples = series.first().map_or(0, |series| series.len());
     let felt: Vec<usize> =
         (0..samples).into_par_iter().filter(|t| series.iter().any(|series| series[*t] != 0.0)).collect();

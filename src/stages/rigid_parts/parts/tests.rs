@@ -73,7 +73,9 @@ fn the_union_of_two_parts_has_a_longer_description_than_both() {
     let (tactile, truth) = tactile();
     let series: Vec<&[f32]> = tactile.series().collect();
     let samples: Vec<usize> = stratified(tactile.samples, MAX_SAMPLES).collect();
-    let roots = Roots::at(&series, &samples, false).normalised();
+    let roots = Roots::at(&series, &samples, false);
+    let scales = roots.scales();
+    let roots = roots.scaled(&scales);
     let sizes = roots.sizes();
     let roots = roots.equalised(&sizes, 0.0);
     let completed = Completion::new(&roots).velocities;
