@@ -12,14 +12,7 @@ def text():
     of = lambda name: values[name][0]
     published, rate = of("published"), of("tree-equations")
     confirms = "confirms" if holds["confirmed"] else "does not confirm"
-    if holds["both-finished"]:
-        verdicts = f"Of all {of('claims')} claims, {of('reproduced')} are reproduced, and {of('not-reproduced')} are not."
-    else:
-        verdicts = (
-            f"Of the {of('judged')} testable claims of the first experiment, {of('reproduced')} are reproduced, and {of('not-reproduced')} are not. "
-            "The second experiment of the confirmation is not finished; claims over the ratio p of motor coordination are those of the run "
-            f"of seed {of('before-seed')}, {of('before-simulations')} simulations: of {of('over-p')}, it reproduced {of('over-p-reproduced')}."
-        )
+    verdicts = f"Of all {of('claims')} claims, {of('reproduced')} are reproduced, and {of('not-reproduced')} are not."
     sentences = [
         "Can an agent learn from touch alone how many rigid parts its body has, and how they are joined?",
         "Mimura et al. (2017) say that it can.",

@@ -122,15 +122,11 @@ def compared(source):
     return {(row["name"], row["claim"]): row for row in table(source)}
 
 
-def claims_of(folder, before=None):
+def claims_of(folder):
     """Rows by claim, interpretation and way of counting, each with its file (of a claim of both experiments, the first's), and
-    those of each experiment; and what the run was. Experiment 2 may be unfinished where a run `before` it is given: all that is of
-    experiment 2 is then of that run."""
+    those of each experiment; and what the run was."""
     folders = {experiment: f"{folder}/{experiment}" for experiment in ["exp1", "exp2"]}
-    finished = before is None or (ROOT / folders["exp2"] / "claims.csv").exists()
-    facts = [json.loads(read(f"{of}/manifest.json")) for of in list(folders.values())[: 2 if finished else 1]]
-    if not finished:
-        folders["exp2"] = f"{before}/exp2"
+    facts = [json.loads(read(f"{of}/manifest.json")) for of in folders.values()]
     rows, apart = {}, {}
     for experiment, of in folders.items():
         source = f"{of}/claims.csv"
@@ -142,7 +138,7 @@ def claims_of(folder, before=None):
     if not same or len(simulations) > 1 or first["quick"]:
         sys.exit(f"article: {folder}/exp1 and exp2 must be full runs of one seed, revision and number of simulations")
     run = {"seed": first["seed"], "revision": first["revision"][:7], "simulations": simulations.pop()}
-    return run | {"rows": rows, "apart": apart, "folders": folders, "finished": finished}
+    return run | {"rows": rows, "apart": apart, "folders": folders}
 
 
 def own(run, id):

@@ -10,13 +10,11 @@ DEFAULT_OF = {ABLATION: "equations", STEP: "default"}
 
 
 def claims(now, before, published):
-    """The table of all claims: what the paper says, what came out in both runs, and the verdict. Of a claim that the confirmation
-    does not have yet, interval and verdict are those of the run before it."""
+    """The table of all claims: what the paper says, what came out in both runs, and the verdict by the confirmation."""
     rows = []
-    for key, (row, source) in now["rows"].items():
+    for key, (row, _) in now["rows"].items():
         if key[2] != ALL:
             continue
-        confirmed = source.startswith(f"{CONFIRMATION}/")
         claim, unit = published[row["id"]], row["unit"]
         reading = {CODE: "authors' code", EQUATIONS: "equations"}[row["reading"]] if row["id"] == "tree-accuracy" else ""
         rows.append(
@@ -24,11 +22,11 @@ def claims(now, before, published):
                 "claim": claim["statement"] + (f" ({reading})" if reading else ""),
                 "place": claim["place"].removeprefix("sections ").removeprefix("section "),
                 "published": row["wording"],
-                "confirmation": shown(row["value"], unit) if confirmed else "–",
+                "confirmation": shown(row["value"], unit),
                 "interval": span((row["low"], row["high"]), unit),
                 "before": shown(before["rows"][key][0]["value"], unit),
                 "accepted": span((row["accepted_low"], row["accepted_high"]), unit),
-                "verdict": marked(row["verdict"], before["rows"][key][0]["verdict"]) + ("" if confirmed else " ‡"),
+                "verdict": marked(row["verdict"], before["rows"][key][0]["verdict"]),
             }
         )
     return rows

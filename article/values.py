@@ -5,8 +5,7 @@ It writes article/values.toml: each number that content.typ names, in the words 
 comes from; what holds, by which content.typ chooses between two wordings; and the tables. It writes the abstract, too, into
 article/metadata.yaml and CITATION.cff. With --check it writes nothing, and ends with status 1 if one of the three is not what it
 would write. Where the text says something of the numbers in words and has no other wording, `says` states it here, so that new
-results which contradict the text end in an error and not in a wrong article. While experiment 2 of the confirmation is not finished, all
-numbers over p are those of the run before it, and text and abstract say so. Needs Python 3.11, and no packages.
+results which contradict the text end in an error and not in a wrong article. Needs Python 3.11, and no packages.
 """
 
 import pathlib
@@ -96,25 +95,23 @@ def stated(settings, published):
 
 
 def confirmation(published, before):
-    """Values of single claims in the confirmation, or in the run before it if experiment 2 is not finished, and which hold."""
+    """Values of single claims in the confirmation, and which hold."""
     source = "reproduce/confirm.toml"
     registered = tomllib.loads(read(source))
     fixed, expected = registered["registered"], registered["secondary"]
-    now = claims_of(CONFIRMATION, BEFORE)
+    now = claims_of(CONFIRMATION)
     if (now["seed"], now["simulations"]) != (fixed["seed"], fixed["simulations"]):
         sys.exit(f"article: {CONFIRMATION} is not the run that {source} registers")
     value("registered", fixed["on"], source)
     value("confirm-seed", fixed["seed"], source)
     value("simulations", fixed["simulations"], source)
-    flag("both-finished", now["finished"])
     value("expected", len(expected["reproduced"]) + len(expected["not_reproduced"]), source)
     value("confirm-revision", now["revision"], f"{CONFIRMATION}/exp1/manifest.json")
     value("before-seed", before["seed"], f"{BEFORE}/exp1/manifest.json")
     value("before-simulations", before["simulations"], f"{BEFORE}/exp1/manifest.json")
     value("before-revision", before["revision"], f"{BEFORE}/exp1/manifest.json")
 
-    finished = confirm.EXPERIMENTS if now["finished"] else confirm.EXPERIMENTS[:1]
-    confirmed, text = confirm.conclusion(registered, {name: confirm.read_claims(ROOT / CONFIRMATION / name) for name in finished})
+    confirmed, text = confirm.conclusion(registered, {name: confirm.read_claims(ROOT / CONFIRMATION / name) for name in confirm.EXPERIMENTS})
     flag("confirmed", confirmed)
     value("primary", text.splitlines()[0], f"{CONFIRMATION}/exp1/claims.csv")
     low, high = published["tree-accuracy"]["accept"]
@@ -139,18 +136,13 @@ def confirmation(published, before):
     value("one-simulation-all", f"{round(float(row['bodies_together']) * int(row['bodies']))} of {row['bodies']}", source)
 
     verdicts = {id: own(now, id)[0]["verdict"] for id in published}
-    # Of claims that the confirmation has: of all, or of those of experiment 1.
-    judged = {id: verdict for id, verdict in verdicts.items() if own(now, id)[1].startswith(f"{CONFIRMATION}/")}
     for verdict in VERDICTS:
-        value(verdict.replace(" ", "-"), list(judged.values()).count(verdict), f"{CONFIRMATION}/*/claims.csv")
-    says("two claims cannot be tested", list(judged.values()).count("not testable") == list(verdicts.values()).count("not testable") == 2)
-    wanted = {id: verdict for verdict in VERDICTS[:2] for id in expected[verdict.replace(" ", "_")] if id in judged}
+        value(verdict.replace(" ", "-"), list(verdicts.values()).count(verdict), f"{CONFIRMATION}/*/claims.csv")
+    says("two claims cannot be tested", list(verdicts.values()).count("not testable") == 2)
+    wanted = {id: verdict for verdict in VERDICTS[:2] for id in expected[verdict.replace(" ", "_")]}
     differ = [id for id, verdict in wanted.items() if verdicts[id] != verdict]
     value("judged", len(wanted), f"{CONFIRMATION}/*/claims.csv")
     value("as-expected", len(wanted) - len(differ), f"{CONFIRMATION}/*/claims.csv")
-    over_p = [verdicts[id] for id, claim in published.items() if claim["experiments"] == ["exp2"]]
-    value("over-p", len(over_p), "reproduce/published.toml")
-    value("over-p-reproduced", over_p.count("reproduced"), f"{now['folders']['exp2']}/claims.csv")
     flag("all-as-expected", not differ)
     for id in ["baseline-tree", "number-of-parts", "ari-unknown-number", "ari-worse-with-joints", "first-dimension"]:
         flag(id, verdicts[id] == "reproduced")

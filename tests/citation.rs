@@ -82,28 +82,6 @@ fn the_abstract_has_the_confirmation() {
     assert_eq!(other[2], "It does not confirm the published rate");
 }
 
-/// Whether an abstract says of experiment 2 of the confirmation what is so: that it is not finished, or nothing.
-fn says_what_ran(text: &str, finished: bool) -> bool {
-    let unfinished = text.contains("The second experiment of the confirmation is not finished")
-        && text.contains(
-            "claims over the ratio p of motor coordination are those of the run of seed 1414, 20 simulations",
-        );
-    let all = text.contains("Of all 23 claims, ");
-    (all, unfinished) == (finished, !finished)
-}
-
-#[test]
-fn the_abstract_says_whether_experiment_2_of_the_confirmation_is_finished() {
-    let text = below(&citation(), "abstract: >-").join(" ");
-    let finished = repository("docs/shown/confirm/exp2/claims.csv").exists();
-    assert!(
-        says_what_ran(&text, finished),
-        "experiment 2 is{} finished: {text}",
-        if finished { "" } else { " not" }
-    );
-    assert!(!says_what_ran(&text, !finished), "an abstract of the other case");
-}
-
 #[test]
 fn the_registered_values_are_still_those_that_were_frozen() {
     let Some(mut check) = python(&repository("reproduce/confirm.py")) else { return };
