@@ -404,9 +404,7 @@ unsafe extern "C" {
 unsafe extern "C" {
     pub fn dJointCreateUniversal(arg1: dWorldID, arg2: dJointGroupID) -> dJointID;
 }
-unsafe extern "C" {
-    pub fn dJointCreateFixed(arg1: dWorldID, arg2: dJointGroupID) -> dJointID;
-}
+unsafe extern "C" {}
 unsafe extern "C" {
     pub fn dJointCreateAMotor(arg1: dWorldID, arg2: dJointGroupID) -> dJointID;
 }
@@ -446,9 +444,7 @@ unsafe extern "C" {
 unsafe extern "C" {
     pub fn dJointAddUniversalTorques(joint: dJointID, torque1: dReal, torque2: dReal);
 }
-unsafe extern "C" {
-    pub fn dJointSetFixed(arg1: dJointID);
-}
+unsafe extern "C" {}
 unsafe extern "C" {
     pub fn dJointSetAMotorNumAxes(arg1: dJointID, num: ::std::os::raw::c_int);
 }

@@ -6,7 +6,6 @@
 
 use std::f64::consts::TAU;
 use std::ffi::CStr;
-use std::mem::MaybeUninit;
 use std::sync::Once;
 
 use ode_sys as ode;
@@ -14,13 +13,15 @@ use ode_sys as ode;
 use self::fluid::Surface;
 use self::joints::EngineJoint;
 use self::momentum::{Inertia, Moving};
+use self::rigid::{Mount, make_bodies};
 use super::settings::{AngularMomentum, Physics};
-use crate::stages::agent::{Agent, Part, Shape, Vector3};
+use crate::stages::agent::{Agent, Vector3};
 
 mod fluid;
 mod joints;
 mod momentum;
 mod places;
+mod rigid;
 
 pub(super) use self::joints::ball_error;
 
@@ -60,11 +61,14 @@ pub struct Unstable {
 pub(super) struct World {
     world: ode::dWorldID,
     threading: ode::dThreadingImplementationID,
+    /// Rigid bodies: parts that are fixed to each other are one.
     bodies: Vec<ode::dBodyID>,
     /// Of each body.
     inertias: Vec<Inertia>,
+    /// Where each part is on its body.
+    mounts: Vec<Mount>,
     angular_momentum: AngularMomentum,
-    /// Of each body, where a fluid pushes it; none where no fluid does.
+    /// Of each part, where a fluid pushes it; none where no fluid does.
     surfaces: Vec<Surface>,
     /// The angular momentum that it has given the body about its centre of mass, kg m²/s; not counted where it is not conserved.
     given: Vector3,
@@ -113,41 +117,6 @@ fn last_message() -> String {
     String::from_utf8_lossy(&buffer[..length as usize]).into_owned()
 }
 
-/// Makes the body of a part, at rest in its rest pose; with what it takes to move it.
-///
-/// # Safety
-/// The world must be live.
-unsafe fn make_body(world: ode::dWorldID, part: &Part) -> (ode::dBodyID, Inertia) {
-    const ALONG_Z: i32 = 3;
-    let mut mass = MaybeUninit::<ode::dMass>::uninit();
-    let at = mass.as_mut_ptr();
-    let mut rotation: ode::dMatrix3 = [0.0; 12];
-    for (row, numbers) in rotation.chunks_exact_mut(4).zip(part.rotation) {
-        row[..3].copy_from_slice(&numbers);
-    }
-    // SAFETY: as the caller promises; the mass is written before it is read, and positive, as the ranges of lengths and
-    // density make it.
-    unsafe {
-        match part.shape {
-            Shape::Cylinder { radius, length } => {
-                ode::dMassSetCylinder(at, part.density, ALONG_Z, radius, length);
-            }
-            Shape::Capsule { radius, length } => {
-                ode::dMassSetCapsule(at, part.density, ALONG_Z, radius, length);
-            }
-            Shape::Sphere { radius } => ode::dMassSetSphere(at, part.density, radius),
-            Shape::Box { sides: [x, y, z] } => ode::dMassSetBox(at, part.density, x, y, z),
-        }
-        let mass = mass.assume_init();
-        let body = ode::dBodyCreate(world);
-        ode::dBodySetMass(body, &mass);
-        ode::dBodySetRotation(body, rotation.as_ptr());
-        ode::dBodySetPosition(body, part.centre[0], part.centre[1], part.centre[2]);
-        let tensor = [0, 4, 8].map(|row| [mass.I[row], mass.I[row + 1], mass.I[row + 2]]);
-        (body, Inertia::new(mass.mass, tensor))
-    }
-}
-
 impl World {
     /// Puts `agent` into a fresh world with ODE's default parameters.
     ///
@@ -165,17 +134,20 @@ impl World {
                 threading,
             );
 
-            let (bodies, inertias): (Vec<_>, _) =
-                agent.parts.iter().map(|part| make_body(world, part)).unzip();
+            let (bodies, mounts) = make_bodies(world, agent);
+            let (bodies, inertias): (Vec<_>, _) = bodies.into_iter().unzip();
             let pushed = if physics.fluid_density > 0.0 { agent.parts.as_slice() } else { &[] };
             let surfaces =
                 pushed.iter().map(|part| Surface::new(&part.shape, physics.fluid_density)).collect();
-            let joints = agent.joints.iter().map(|joint| EngineJoint::new(world, &bodies, joint)).collect();
+            let body = |part: usize| bodies[mounts[part].body];
+            let joint = |joint| EngineJoint::new(world, &body, joint);
+            let joints = agent.joints.iter().map(joint).collect();
             let mut world = Self {
                 world,
                 threading,
                 bodies,
                 inertias,
+                mounts,
                 angular_momentum: physics.angular_momentum,
                 surfaces,
                 given: [0.0; 3],
@@ -212,14 +184,15 @@ impl World {
             return Err(unstable(format!("the physics engine gave up ({})", last_message())));
         }
         self.rotation_squared = 0.0;
-        for part in 0..self.bodies.len() {
+        for body in 0..self.bodies.len() {
             let squares = |velocity: Vector3| velocity.iter().map(|x| x * x).sum::<f64>();
-            let (linear, angular) = self.velocity(part);
+            let (linear, angular) = self.body_velocity(body);
             let (linear, angular) = (squares(linear), squares(angular));
             self.rotation_squared = self.rotation_squared.max(angular);
             // No real motion of such bodies comes near a kilometre a second.
             for (squared, limit, unit) in [(angular, self.fastest, "rad/s"), (linear, 1e3, "m/s")] {
                 if squared.is_nan() || squared >= limit * limit {
+                    let part = self.mounts.iter().position(|mount| mount.body == body).unwrap_or(body);
                     return Err(unstable(format!("part {part} reached {:.3e} {unit}", squared.sqrt())));
                 }
             }
@@ -230,22 +203,33 @@ impl World {
         Ok(())
     }
 
-    /// All parts as they move now.
+    /// All bodies as they move now.
     fn moving(&self) -> Vec<Moving> {
-        let part = |part: usize| {
-            let (linear, angular) = self.velocity(part);
-            Moving { inertia: self.inertias[part], pose: self.pose(part), linear, angular }
+        let body = |body: usize| {
+            let (linear, angular) = self.body_velocity(body);
+            Moving { inertia: self.inertias[body], pose: self.body_pose(body), linear, angular }
         };
-        (0..self.bodies.len()).map(part).collect()
+        (0..self.bodies.len()).map(body).collect()
     }
 
     /// Applies the forces of the fluid for the next step, and keeps account of the angular momentum that they give if it is needed.
     fn let_the_fluid_push(&mut self) {
-        let parts = self.moving();
+        let bodies = self.moving();
         let conserved = self.angular_momentum == AngularMomentum::Conserved;
-        let centre = conserved.then(|| momentum::centre_of_mass(&parts));
-        for (at, (surface, part)) in self.surfaces.iter().zip(&parts).enumerate() {
-            let push = surface.push(&part.pose, part.linear, part.angular);
+        let centre = conserved.then(|| momentum::centre_of_mass(&bodies));
+        let mut pushes = vec![([0.0; 3], [0.0; 3]); bodies.len()];
+        for (surface, mount) in self.surfaces.iter().zip(&self.mounts) {
+            let Moving { pose, linear, angular, .. } = &bodies[mount.body];
+            let velocity = mount.velocity(pose, *linear, *angular);
+            let (force, torque) = surface.push(&mount.pose(*pose), velocity, *angular);
+            let torque = mount.torque(pose, force, torque);
+            let (forces, torques) = &mut pushes[mount.body];
+            for axis in 0..3 {
+                forces[axis] += force[axis];
+                torques[axis] += torque[axis];
+            }
+        }
+        for (at, (push, part)) in pushes.into_iter().zip(&bodies).enumerate() {
             let ([x, y, z], torque) = fluid::over_step(push, part, self.step);
             // SAFETY: the body is live, and a force is finite: it stops a part that was found to have a finite velocity within
             // the step at most.
@@ -274,24 +258,30 @@ impl World {
         }
     }
 
-    /// Linear (m/s) and angular (rad/s) velocity of a part, in the world's frame.
-    pub(super) fn velocity(&self, part: usize) -> (Vector3, Vector3) {
+    /// Position and rotation of a part.
+    pub(super) fn pose(&self, part: usize) -> Pose {
+        let mount = &self.mounts[part];
+        mount.pose(self.body_pose(mount.body))
+    }
+
+    /// Linear (m/s) and angular (rad/s) velocity of a body, in the world's frame.
+    fn body_velocity(&self, body: usize) -> (Vector3, Vector3) {
         // SAFETY: both pointers lead to three numbers of a live body, and are read at once.
         unsafe {
             (
-                *ode::dBodyGetLinearVel(self.bodies[part]).cast::<Vector3>(),
-                *ode::dBodyGetAngularVel(self.bodies[part]).cast::<Vector3>(),
+                *ode::dBodyGetLinearVel(self.bodies[body]).cast::<Vector3>(),
+                *ode::dBodyGetAngularVel(self.bodies[body]).cast::<Vector3>(),
             )
         }
     }
 
-    /// Position and rotation of a part.
-    pub(super) fn pose(&self, part: usize) -> Pose {
+    /// Position and rotation of a body.
+    fn body_pose(&self, body: usize) -> Pose {
         // SAFETY: ODE keeps three numbers of position and three rows of four of rotation for a live body.
         let (position, rows) = unsafe {
             (
-                *ode::dBodyGetPosition(self.bodies[part]).cast::<Vector3>(),
-                *ode::dBodyGetRotation(self.bodies[part]).cast::<[[f64; 4]; 3]>(),
+                *ode::dBodyGetPosition(self.bodies[body]).cast::<Vector3>(),
+                *ode::dBodyGetRotation(self.bodies[body]).cast::<[[f64; 4]; 3]>(),
             )
         };
         Pose { position, rotation: rows.map(|[x, y, z, _]| [x, y, z]) }

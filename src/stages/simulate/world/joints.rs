@@ -85,11 +85,15 @@ impl EngineJoint {
     /// Makes a joint between two bodies, in the pose that they have.
     ///
     /// # Safety
-    /// The world and its bodies must be live, and there must be one for each part of the joint. The joint must not be used
+    /// The world and its bodies must be live, and `body` must give the one of each part of the joint. The joint must not be used
     /// after its world is destroyed.
-    pub(super) unsafe fn new(world: ode::dWorldID, bodies: &[ode::dBodyID], joint: &Joint) -> Self {
+    pub(super) unsafe fn new(
+        world: ode::dWorldID,
+        body: &dyn Fn(usize) -> ode::dBodyID,
+        joint: &Joint,
+    ) -> Self {
         let [x, y, z] = joint.anchor;
-        let own = [bodies[joint.parent], bodies[joint.child]];
+        let own = [body(joint.parent), body(joint.child)];
         // SAFETY: as the caller promises. Attach first: ODE ignores the anchor and axes of a joint without bodies. The third
         // direction is for a moment only: whenever an axis is set, ODE relates it to the other, and reads what it never
         // wrote if that is parallel, as the one it begins with is to the first.
@@ -118,12 +122,8 @@ impl EngineJoint {
                     ode::dJointSetBallAnchor(id, x, y, z);
                     Self { id, kind: Kind::Ball(Ball::new(world, own)) }
                 }
-                Freedom::Fixed => {
-                    let id = ode::dJointCreateFixed(world, null_mut());
-                    ode::dJointAttach(id, own[0], own[1]);
-                    ode::dJointSetFixed(id);
-                    Self { id, kind: Kind::Fixed }
-                }
+                // Both are one body.
+                Freedom::Fixed => Self { id: null_mut(), kind: Kind::Fixed },
             }
         }
     }

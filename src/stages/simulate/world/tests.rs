@@ -32,7 +32,7 @@ fn momentum(world: &World, scene: &Scene) -> (f64, f64) {
     let mut total = [0.0; 3];
     let mut scale = 0.0;
     for part in 0..world.bodies.len() {
-        let (velocity, _) = world.velocity(part);
+        let (velocity, _) = world.body_velocity(part);
         total = [0, 1, 2].map(|i| total[i] + mass * velocity[i]);
         scale += mass * norm(velocity);
     }
@@ -44,7 +44,7 @@ fn angular_momentum(world: &World, scene: &Scene) -> Vector3 {
     let (mass, across, along) = inertia(scene);
     let mut total = [0.0; 3];
     for part in 0..world.bodies.len() {
-        let (Pose { position: r, rotation }, (v, spin)) = (world.pose(part), world.velocity(part));
+        let (Pose { position: r, rotation }, (v, spin)) = (world.pose(part), world.body_velocity(part));
         let axis = rotation.map(|row| row[2]);
         let axial: f64 = (0..3).map(|i| axis[i] * spin[i]).sum();
         for i in 0..3 {
@@ -172,7 +172,7 @@ fn a_locked_body_turns_by_what_the_engine_adds_and_by_nothing_else() {
         (0..world.joints.len()).for_each(|joint| world.lock(joint));
         (0..100).for_each(|_| world.step().unwrap());
         assert!(world.anchor_separation() < 0.01, "{angular_momentum:?}");
-        (0..agent.parts.len()).map(|part| norm(world.velocity(part).1)).fold(0.0, f64::max)
+        (0..agent.parts.len()).map(|part| norm(world.body_velocity(part).1)).fold(0.0, f64::max)
     };
     let (conserved, engine) = (rest(AngularMomentum::Conserved), rest(AngularMomentum::Engine));
     assert!(conserved < 1e-9 && engine > 1e-3, "{conserved:e} {engine:e}");
@@ -266,7 +266,7 @@ fn soften(world: &mut World, agent: &Agent, cfm: f64) {
         ode::dWorldSetCFM(world.world, cfm);
         for (id, joint) in world.joints.iter_mut().zip(&agent.joints) {
             id.detach();
-            *id = EngineJoint::new(world.world, &world.bodies, joint);
+            *id = EngineJoint::new(world.world, &|part| world.bodies[part], joint);
         }
     }
 }

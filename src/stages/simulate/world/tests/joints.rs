@@ -1,7 +1,7 @@
 //! Test every kind of joint and shape on two parts.
 
 use super::*;
-use crate::stages::agent::{Freedom, Joint, across};
+use crate::stages::agent::{Freedom, Joint, Part, Shape, across};
 
 /// Two parts of the given shape, the second half as heavy, joined in the middle between them.
 fn pair(shape: Shape, freedom: Freedom) -> Agent {
@@ -62,7 +62,7 @@ fn a_locked_joint_of_any_kind_makes_one_rigid_body_of_its_parts() {
         for step in 0..200 {
             if step < 20 {
                 // SAFETY: the body is live.
-                unsafe { ode::dBodyAddForce(world.bodies[1], 0.0, 3.0, 2.0) };
+                unsafe { ode::dBodyAddForce(world.bodies[world.mounts[1].body], 0.0, 3.0, 2.0) };
             }
             world.step().unwrap();
         }
@@ -74,7 +74,7 @@ fn a_locked_joint_of_any_kind_makes_one_rigid_body_of_its_parts() {
             .fold(0.0, f64::max);
         let [left, right] = [first.place([0.0, 0.0, 0.2]), second.place([0.0, 0.0, -0.2])];
         let separation = norm([0, 1, 2].map(|i| left[i] - right[i]));
-        assert!(norm(world.velocity(1).0) > 0.05, "{freedom:?} moves");
+        assert!(norm(world.body_velocity(world.mounts[1].body).0) > 0.05, "{freedom:?} moves");
         assert!(separation < 0.01, "{freedom:?}: {separation}");
         if lock {
             assert!(apart < 0.01, "{freedom:?}: {apart}");
@@ -115,7 +115,7 @@ fn each_shape_has_its_mass_and_inertia() {
         world.unlock(0);
         world.apply_torques(0, [1e-3, 0.0, 0.0]);
         world.step().unwrap();
-        let (linear, angular) = world.velocity(0);
+        let (linear, angular) = world.body_velocity(0);
         (0.01 / linear[0], 1e-5 / angular[0])
     };
     let pi = std::f64::consts::PI;
@@ -130,5 +130,51 @@ fn each_shape_has_its_mass_and_inertia() {
         let found = moved(shape);
         assert!((found.0 / mass - 1.0).abs() < 1e-6, "{shape:?}: {found:?}, not {mass}");
         assert!((found.1 / moment - 1.0).abs() < 1e-3, "{shape:?}: {found:?}, not {moment}");
+    }
+}
+
+#[test]
+fn parts_that_are_fixed_move_as_one_body_with_the_mass_and_inertia_of_all() {
+    // A bar of two cubes of 1 kg, and the same as a box: both turn alike by a torque, and both are pushed alike by a fluid.
+    let cube = |x: f64| Part {
+        shape: Shape::Box { sides: [0.1; 3] },
+        centre: [x, 0.0, 0.0],
+        rotation: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+        density: 1000.0,
+    };
+    let fixed = Joint { parent: 0, child: 1, anchor: [0.0; 3], freedom: Freedom::Fixed };
+    let two = Agent { parts: vec![cube(-0.05), cube(0.05)], joints: vec![fixed], sites: Vec::new() };
+    let bar = Part { shape: Shape::Box { sides: [0.2, 0.1, 0.1] }, ..cube(0.0) };
+    let one = Agent { parts: vec![bar], joints: Vec::new(), sites: Vec::new() };
+    for density in [0.0, 1000.0] {
+        let moved = |agent: &Agent| {
+            let mut world = World::new(agent, &Physics { fluid_density: density, ..Scene::new().physics });
+            assert_eq!(world.bodies.len(), 1);
+            for step in 0..100 {
+                if step < 10 {
+                    // In a fluid across the bar only: along it, the cubes' faces inside are pushed, too.
+                    let along = if density == 0.0 { 1.0 } else { 0.0 };
+                    // SAFETY: the body is live.
+                    unsafe {
+                        ode::dBodyAddTorque(world.bodies[0], 0.0, 0.01 * along, 0.02 * along);
+                        ode::dBodyAddForce(world.bodies[0], along, 2.0, 0.5);
+                    }
+                }
+                world.step().unwrap();
+            }
+            let first = world.pose(0);
+            let place = if agent.parts.len() == 2 { first.place([0.05, 0.0, 0.0]) } else { first.position };
+            (place, world.body_velocity(0), world.pose(agent.parts.len() - 1))
+        };
+        let (of_two, of_one) = (moved(&two), moved(&one));
+        let off = |a: Vector3, b: Vector3| norm([0, 1, 2].map(|i| a[i] - b[i]));
+        let near = 1e-9;
+        assert!(norm(of_one.1.0) > 0.05 && off(of_two.0, of_one.0) < near, "{of_two:?} {of_one:?}");
+        assert!(
+            off(of_two.1.0, of_one.1.0) < near && off(of_two.1.1, of_one.1.1) < near,
+            "{of_two:?} {of_one:?}"
+        );
+        let end = of_one.2.place([0.05, 0.0, 0.0]);
+        assert!(off(of_two.2.position, end) < near, "{of_two:?} {of_one:?}");
     }
 }

@@ -17,7 +17,7 @@ fn a_fluid_slows_a_body_down_by_the_closed_form() {
             }
         }
         (0..(time / physics.step).round() as usize).for_each(|_| world.step().unwrap());
-        norm(world.velocity(2).0)
+        norm(world.body_velocity(2).0)
     };
     assert!((speed_after(&scene.physics, 1.0) - start).abs() < 1e-9, "no fluid pushes in the fixture");
     scene.physics.fluid_density = 1010.0;
@@ -59,7 +59,7 @@ fn a_fluid_slows_a_spin_down_by_the_closed_form() {
             world.step().unwrap();
             time += scene.physics.step;
         }
-        let (found, right) = (norm(world.velocity(2).1), start / (1.0 + c * start * until));
+        let (found, right) = (norm(world.body_velocity(2).1), start / (1.0 + c * start * until));
         assert!((found - right).abs() < 0.05 * right, "after {until} s: {found}, {right}");
     }
 }
@@ -75,7 +75,7 @@ fn a_fluid_takes_energy_from_whatever_moves() {
         let energy = |world: &World| -> f64 {
             let (mass, across, along) = inertia(&scene);
             let part = |part: usize| {
-                let (v, spin) = world.velocity(part);
+                let (v, spin) = world.body_velocity(part);
                 let axial: f64 = (0..3).map(|i| world.pose(part).rotation[i][2] * spin[i]).sum();
                 mass * norm(v).powi(2) + across * (norm(spin).powi(2) - axial * axial) + along * axial * axial
             };
