@@ -87,7 +87,7 @@ for number, table in enumerate(tables):
     put("plot", f"{number:02}", bytes([number]) + table.encode())
 
 ROOT = SEEDS.parent.parent
-for robot in sorted((ROOT / "tests/data/import").glob("*")):
+for robot in sorted((ROOT / "tests/data/import").glob("*.*")):
     put("body", robot.name, b"\0" + robot.read_bytes())
 for body in ("star", "human"):
     put("body", body, b"\1" + (ROOT / f"bodies/{body}.toml").read_bytes())
@@ -100,3 +100,19 @@ JOINT = "JOINT a\n{\nOFFSET 1 0 0\nCHANNELS 6 Xposition Yposition Zposition Xrot
 put("bvh", "travel", b"\1HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 1 Zrotation\n" + JOINT.encode() +
     b"End Site\n{\nOFFSET 1 1 0\n}\n}\n}\nMOTION\nFrames: 3\nFrame Time: .1\n0 1 0 0 0 0 0\n9 1.5 0 0 9 0 0\n20 2 0 0 20 0 5\n")
 put("bvh", "rubbish", b"\0HIERARCHY\nROOT \xff\x1b{\nOFFSET nan 0 0\nCHANNELS 7 Wrotation\nEnd Site{}}}\nMOTION\nFrames: 99999999999\nFrame Time: 0\n")
+
+CORNERS, FACES = [[0, 0, 0], [1, 0, 0], [0, 2, 0], [0, 0, 3]], [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]
+words = lambda rows: " ".join(str(number) for row in rows for number in row)
+facets = "".join(f"facet normal 0 0 0 outer loop {''.join(f'vertex {words([CORNERS[at]])} ' for at in face)}endloop endfacet\n" for face in FACES)
+put("mesh", "stl-text", b"\0solid t\n" + facets.encode() + b"endsolid t\n")
+triangles = np.array([[[0, 0, 0], *(CORNERS[at] for at in face)] for face in FACES], "<f4").reshape(4, 12)
+put("mesh", "stl", bytes([0] * 81) + (4).to_bytes(4, "little") + b"".join(row.tobytes() + b"\0\0" for row in triangles))
+put("mesh", "obj", b"\1" + "".join(f"v {words([corner])}\n" for corner in CORNERS).encode() +
+    "".join(f"f {words([[at + 1 for at in face]])}\n" for face in FACES).encode() + b"f 1/1/1 2//2 3 4\nf -1 -2 -3\n")
+put("mesh", "msh", b"\3" + np.array([4, 0, 0, 4], "<u4").tobytes() + np.array(CORNERS, "<f4").tobytes() + np.array(FACES, "<u4").tobytes())
+put("mesh", "dae", f"""\2<COLLADA><asset><unit meter="0.5"/></asset><library_geometries><geometry id="g"><mesh>
+<source id="p"><float_array>{words(CORNERS)}</float_array></source><vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
+<triangles><input semantic="VERTEX" source="#v" offset="0"/><p>{words(FACES[:2])}</p></triangles>
+<polylist><input semantic="VERTEX" source="#v" offset="1"/><vcount>4</vcount><p>9 0 9 1 9 2 9 3</p></polylist></mesh></geometry>
+</library_geometries><library_visual_scenes><visual_scene id="s"><node><rotate>0 0 1 90</rotate><translate>1 2 3</translate>
+<instance_geometry url="#g"/></node></visual_scene></library_visual_scenes><scene><instance_visual_scene url="#s"/></scene></COLLADA>""".encode())

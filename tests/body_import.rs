@@ -74,13 +74,55 @@ fn urdf_becomes_a_body() {
 }
 
 #[test]
+fn a_robot_of_meshes_is_felt_on_its_meshes() {
+    let folder = Folder::new();
+    let said = import(&folder, &data("robot/urdf/robot.urdf"), "--sensors-per-part 30");
+    assert_eq!((said.status, &*said.err), (Some(0), ""), "{said:?}");
+    for note in [
+        "link `tool`: mesh `package://robot/meshes/gone.stl` is not there; a box of its inertia",
+        "joints that do not turn are held at their rest place (1): slider (prismatic)",
+        "the body is the tree of `base`; other trees are left out (--root keeps another) (1): target",
+    ] {
+        assert!(said.out.contains(note), "{said:?} lacks {note}");
+    }
+    let body = read_body(&folder.at("body.toml")).unwrap();
+    assert_eq!(body.rigid_names(), ["base", "arm + tool + slider"]);
+    let agent = &body.agent;
+    // The mesh is an upright roof of 0.2 x 0.3 m, 0.1 m high, and both of its scales are millimetres.
+    assert_eq!(agent.parts[0].shape, Shape::Box { sides: [0.2, 0.3, 0.1] });
+    let on_base = agent.sites.iter().filter(|site| site.part == 0);
+    let slope = (0.1_f64 / 0.15).atan();
+    let mut slanted = 0;
+    for site in on_base {
+        let [x, y, z] = [0, 1, 2].map(|axis| site.position[axis] + agent.parts[0].centre[axis]);
+        let on_roof = (z - 0.1 * (1.0 - y.abs() / 0.15)).abs() < 1e-9;
+        assert!(on_roof || z.abs() < 1e-9 || (x.abs() - 0.1).abs() < 1e-9, "{site:?} lies on no face");
+        if site.normal[2] > 0.0 {
+            slanted += 1;
+            assert!((site.normal[2] - slope.cos()).abs() < 1e-9, "{site:?}");
+        }
+    }
+    assert!((10..20).contains(&slanted), "{slanted} of 30: two of five faces, with 45 % of the area");
+    let mass: f64 = agent.parts.iter().map(|part| part.density * volume(&part.shape)).sum();
+    assert!((mass - 6.0).abs() < 1e-6, "{mass} kg");
+    folder.run("simulate --body body.toml --duration 2 --out felt");
+}
+
+fn volume(shape: &Shape) -> f64 {
+    match *shape {
+        Shape::Box { sides } => sides.iter().product(),
+        _ => panic!("{shape:?} is no box"),
+    }
+}
+
+#[test]
 fn a_mistake_is_one_line_and_leaves_no_file() {
     let folder = Folder::new();
     for (name, expected) in [
-        ("mesh.xml", "mesh.xml: line 6: geom of body `arm` is of type `mesh`; make it a box, sphere"),
+        ("mesh.xml", "mesh.xml: line 6: geom of body `arm` has mesh `arm`, which no asset is; add it"),
+        ("cut-mesh.urdf", "cut-mesh.urdf: line 4: mesh of link `a` cannot be read: cut.stl: "),
         ("cut.xml", "cut.xml: this is not well-formed XML"),
         ("loop.urdf", "loop.urdf: link `a` is in a loop of joints"),
-        ("slide.urdf", "slide.urdf: link `b`: its joint is `prismatic`"),
         ("number.urdf", "number.urdf: line 2: sphere of link `a` has radius `wide`, which must be a number"),
         ("absent.xml", "absent.xml: cannot be read"),
     ] {
@@ -89,6 +131,10 @@ fn a_mistake_is_one_line_and_leaves_no_file() {
         assert!(said.err.starts_with("bodyschema: "), "{name}: {}", said.err);
         assert!(!folder.at("body.toml").exists(), "{name}");
     }
+    import(&folder, &data("slide.urdf"), "--strict")
+        .is_refused("slide.urdf: link `b`: its joint is `prismatic`");
+    import(&folder, &data("arm.xml"), "--root arm")
+        .is_refused("arm.xml: no body is called `arm` (--root); give the name");
     // The description itself is not written over.
     fs::copy(data("arm.xml"), folder.at("arm.xml")).unwrap();
     folder.refuse("body import arm.xml --out arm.xml", "is the input file");

@@ -3,7 +3,7 @@
 #![no_main]
 
 use bodyschema::files::body::{SkinEntry, read_body, write_body};
-use bodyschema::files::import::import;
+use bodyschema::files::import::{Options, import};
 use bodyschema_fuzz::{accepted, file, folder};
 use libfuzzer_sys::fuzz_target;
 
@@ -17,7 +17,8 @@ fuzz_target!(|data: &[u8]| {
         return;
     }
     let skin = SkinEntry { sensors: Some(3), per_area: None };
-    if let Some(robot) = accepted(import(&file("robot.xml", rest), skin)) {
+    let options = Options { skin, ..Options::default() };
+    if let Some(robot) = accepted(import(&file("robot.xml", rest), &options)) {
         let made = folder().join("robot.toml");
         write_body(&made, "fuzzed", &robot.file).expect("it can be written");
         read_body(&made).expect("what was made of a robot is a body");

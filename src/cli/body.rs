@@ -11,7 +11,7 @@ use super::options::metres;
 use super::output::say;
 use crate::files::body::{BodyFile, JointName, SkinEntry, write_body};
 use crate::files::bvh::read_bvh;
-use crate::files::import::{Bones, Imported, SKIN, import};
+use crate::files::import::{Bones, Imported, Options, SKIN, import};
 
 /// Makes files that describe a body, for simulate --body (not in the paper).
 #[derive(Args)]
@@ -51,6 +51,12 @@ struct Import {
     #[arg(long, value_name = "METRES", value_parser = metres,
           help = format!("BVH: length of a bone from which on it carries skin, m [default: {}]", Bones::MIN_LENGTH))]
     min_length: Option<f64>,
+    /// Robots: the body or link whose tree is imported [default: that of the largest tree]
+    #[arg(long, value_name = "NAME")]
+    root: Option<String>,
+    /// Robots: refuse what a body cannot have, such as sliding joints, instead of changing it with a note
+    #[arg(long)]
+    strict: bool,
     /// File for the body (.toml)
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
@@ -87,7 +93,7 @@ impl Import {
                     robot.display()
                 );
             }
-            import(robot, skin)?
+            import(robot, &Options { skin, strict: self.strict, root: self.root })?
         };
         let name = robot.file_name().unwrap_or_default();
         write_body(out, &format!("Imported from {name:?}."), &file)?;

@@ -1,6 +1,7 @@
 //! Test what a body file means, and that every mistake is named.
 
 use super::*;
+use crate::stages::agent::{Freedom, Joint, Shape};
 
 const TRUNK: &str =
     "[[part]]\nname = \"trunk\"\nshape = \"capsule\"\nradius = 0.1\nfrom = [0, 0, 0]\nto = [0, 0, 0.5]\n";
@@ -142,4 +143,26 @@ fn every_mistake_is_one_line_that_names_the_part() {
     assert!(read(&format!("{TRUNK}joint = \"ball\"\n")).unwrap_err().contains("a joint but no parent"));
     assert!(read(&format!("{TRUNK}{TRUNK}")).unwrap_err().contains("another part has this name"));
     assert!(read("[[part]\n").unwrap_err().contains("line 1"));
+}
+
+#[test]
+fn sensors_at_given_places_are_in_the_frame_of_their_part() {
+    let turned = "[[part]]\nname = \"a\"\nshape = \"box\"\nsize = [1, 1, 1]\ncentre = [0, 0, 2]\nquaternion = [1, 0, 0, 1]\n";
+    let body = read(&format!("{turned}places = [[0, 0.5, 2, 0, 3, 0], [0, 0, 2.5, 0, 0, 1]]")).unwrap();
+    let [first, second] = &body.agent.sites[..] else { panic!("{:?}", body.agent.sites) };
+    // A quarter of a turn about z: what is y in the file is x on the part.
+    let near =
+        |found: Vector3, expected: Vector3| found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-12);
+    assert!(near(first.position, [0.5, 0.0, 0.0]) && near(first.normal, [1.0, 0.0, 0.0]), "{first:?}");
+    assert!(near(second.position, [0.0, 0.0, 0.5]) && near(second.normal, [0.0, 0.0, 1.0]), "{second:?}");
+    for (places, expected) in [
+        ("places = [[0, 0, 0, 0, 0, 0]]", "the direction of a place is [0.0, 0.0, 0.0], but must be"),
+        ("places = [[0, 0, nan, 0, 0, 1]]", "a place is [0.0, 0.0, NaN], but must be numbers"),
+        ("places = [[0, 0, 0, 0, 0, 1, 2]]", "places has 7 numbers, but needs 6"),
+        ("places = []\nskin = { sensors = 3 }", "it has both skin and places; give one"),
+        ("places = []", "it has no sensors"),
+    ] {
+        let message = read(&format!("{turned}{places}")).unwrap_err();
+        assert!(message.contains(expected), "{places}: {message}");
+    }
 }

@@ -1,19 +1,28 @@
 //! Read MJCF, the description that MuJoCo reads: its nested bodies, their joints and geoms.
 
+mod assets;
 mod defaults;
 
 use std::collections::{HashMap, HashSet};
+use std::f64::consts::PI;
+use std::rc::Rc;
 
-use nalgebra::{Isometry3, Point3, Translation3, Vector3};
+use nalgebra::{Isometry3, Matrix3, Point3, Translation3, Vector3};
 use roxmltree::Node;
 
+use self::assets::Assets;
 use self::defaults::Defaults;
-use super::placed::{Link, Solid, Turn, weigh, z_to};
-use super::xml::{Element, Wrong};
+use super::document::Wrong;
+use super::located::Located;
+use super::mesh::Mesh;
+use super::notes::names;
+use super::placed::{Link, Read, Solid, Turn, weigh, z_to};
+use super::xml::Element;
+use crate::files::body::DENSITY;
 use crate::stages::agent::Shape;
 
 /// Elements that stand for others, which bodies may be among.
-const UNREAD: [&str; 6] = ["include", "attach", "replicate", "composite", "flexcomp", "plugin"];
+const UNREAD: [&str; 4] = ["attach", "composite", "flexcomp", "plugin"];
 
 /// Elements of bodies that say nothing of parts, joints or shapes.
 const BESIDE: [&str; 5] = ["site", "camera", "light", "inertial", "geom"];
@@ -29,40 +38,45 @@ struct Frame<'a> {
     body: Option<usize>,
 }
 
+/// What a body names as its inertia.
+struct Inertial {
+    /// kg.
+    mass: f64,
+    /// About the centre of mass, kg m².
+    tensor: Matrix3<f64>,
+    /// From the frame of the tensor to the common one.
+    pose: Isometry3<f64>,
+}
+
 /// Bodies of a file, as far as they are read.
 struct Bodies<'a> {
     defaults: Defaults<'a>,
+    assets: Assets<'a>,
+    notes: Vec<String>,
     links: Vec<Link>,
     /// The geoms of each body, each with its frame.
     geoms: Vec<Vec<(Element<'a>, Isometry3<f64>)>>,
-    /// The mass that each body names, kg.
-    masses: Vec<Option<f64>>,
+    /// The inertia that each body names.
+    inertials: Vec<Option<Inertial>>,
     /// Names of bodies that have one.
     taken: HashSet<&'a str>,
     unnamed: usize,
 }
 
-/// The bodies of the element `mujoco`, each after the one that carries it.
-pub(super) fn links<'a>(root: Node<'a, 'a>) -> Result<Vec<Link>, Wrong> {
-    if let Some(node) = root.descendants().find(|node| node.has_tag_name("include")) {
-        return Err(Element::new("include", node)
-            .wrong("is not supported; insert the content of that file in its place"));
-    }
-    let tied = |node: &Node| {
-        ["connect", "weld"].contains(&node.tag_name().name()) && node.attribute("active") != Some("false")
-    };
-    let equalities = root.children().filter(|node| node.has_tag_name("equality"));
-    if let Some(node) = equalities.flat_map(|node| node.children()).find(tied) {
-        let label = format!("{} in equality", node.tag_name().name());
-        return Err(Element::new(label, node).wrong("joins bodies in addition to the tree; remove it"));
-    }
+/// The bodies of the element `mujoco`, each after the one that carries it. `strict` refuses bodies that are tied together in
+/// addition to the tree.
+pub(super) fn links<'a>(root: Node<'a, 'a>, files: &'a Located, strict: bool) -> Result<Read, Wrong> {
+    let defaults = Defaults::new(root)?;
+    let notes = Vec::from_iter(ties(root, &defaults, strict)?);
     let worlds = || root.children().filter(|node| node.has_tag_name("worldbody"));
     let named = worlds().flat_map(|world| world.descendants()).filter(|node| node.has_tag_name("body"));
     let mut bodies = Bodies {
-        defaults: Defaults::new(root)?,
+        assets: Assets::new(root, files, &defaults)?,
+        defaults,
+        notes,
         links: Vec::new(),
         geoms: Vec::new(),
-        masses: Vec::new(),
+        inertials: Vec::new(),
         taken: named.filter_map(|node| node.attribute("name")).collect(),
         unnamed: 0,
     };
@@ -89,6 +103,33 @@ pub(super) fn links<'a>(root: Node<'a, 'a>) -> Result<Vec<Link>, Wrong> {
     bodies.finish()
 }
 
+/// Says which bodies are tied together in addition to the tree, which they then are not. A tie with the world is none: a body
+/// floats.
+fn ties<'a>(root: Node<'a, 'a>, defaults: &Defaults<'a>, strict: bool) -> Result<Option<String>, Wrong> {
+    let sections = root.children().filter(|node| node.has_tag_name("equality"));
+    let mut tied = Vec::new();
+    for node in sections.flat_map(|node| node.children()) {
+        let tag = node.tag_name().name();
+        if !["connect", "weld"].contains(&tag) {
+            continue;
+        }
+        let element = defaults.over_as(format!("{tag} in equality"), node, "equality")?;
+        let (Some(first), Some(second)) = (node.attribute("body1"), node.attribute("body2")) else {
+            continue;
+        };
+        if element.text("active") == Some("false") || [first, second].contains(&"world") {
+            continue;
+        }
+        if strict {
+            return Err(element.wrong("joins bodies in addition to the tree; remove it"));
+        }
+        tied.push(format!("{first} with {second}"));
+    }
+    let names = names(tied.iter().map(String::as_str));
+    Ok(names
+        .map(|names| format!("bodies are tied together in addition to the tree, which is left out {names}")))
+}
+
 impl<'a> Bodies<'a> {
     /// Reads an element that is in a frame, but not what is within it; gives the frame that it is itself.
     fn read(&mut self, node: Node<'a, 'a>, around: Frame<'a>) -> Result<Option<Frame<'a>>, Wrong> {
@@ -105,9 +146,10 @@ impl<'a> Bodies<'a> {
                 let name = node.attribute("name").map_or_else(|| self.free_name(), str::to_owned);
                 let frame = self.frame(Element::new(format!("body `{name}`"), node), node, around)?;
                 let origin = frame.pose.translation.vector;
-                self.links.push(Link { name, parent, origin, turns: Vec::new(), solids: Vec::new() });
+                let (turns, solids) = (Vec::new(), Vec::new());
+                self.links.push(Link { name, parent, origin, turns, solids, bare_mass: 0.0 });
                 self.geoms.push(Vec::new());
-                self.masses.push(None);
+                self.inertials.push(None);
                 Ok(Some(Frame { body: Some(self.links.len() - 1), ..frame }))
             }
             ("frame", _) => self.frame(Element::new(label, node), node, around).map(Some),
@@ -123,7 +165,7 @@ impl<'a> Bodies<'a> {
                 Ok(None)
             }
             ("inertial", Some(body)) if !self.defaults.weighs_geoms => {
-                self.masses[body] = Some(Element::new(label, node).needed_number("mass")?);
+                self.inertials[body] = Some(self.inertial(&Element::new(label, node), &around)?);
                 Ok(None)
             }
             _ if BESIDE.contains(&tag) => Ok(None),
@@ -148,24 +190,100 @@ impl<'a> Bodies<'a> {
         }
     }
 
+    fn inertial(&self, element: &Element, around: &Frame) -> Result<Inertial, Wrong> {
+        let pose = around.pose * self.defaults.pose(element)?;
+        let tensor = match element.numbers("fullinertia")? {
+            Some([xx, yy, zz, xy, xz, yz]) => Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz),
+            None => Matrix3::from_diagonal(&element.numbers("diaginertia")?.unwrap_or_default().into()),
+        };
+        Ok(Inertial { mass: element.needed_number("mass")?, tensor, pose })
+    }
+
     /// The bodies, with their solids.
-    fn finish(self) -> Result<Vec<Link>, Wrong> {
-        let Self { defaults, mut links, geoms, masses, .. } = self;
-        for ((link, geoms), mass) in links.iter_mut().zip(geoms).zip(masses) {
-            let touches = geoms.iter().map(|(geom, _)| touches(geom)).collect::<Result<Vec<_>, _>>()?;
-            // What touches nothing is a picture, if anything else does.
-            let all = !touches.contains(&true);
-            for ((geom, frame), touches) in geoms.iter().zip(touches) {
-                if all || touches {
-                    link.solids.push(solid(geom, frame, &defaults)?);
-                }
+    fn finish(mut self) -> Result<Read, Wrong> {
+        let geoms = std::mem::take(&mut self.geoms);
+        let inertials = std::mem::take(&mut self.inertials);
+        for (body, (geoms, inertial)) in geoms.into_iter().zip(inertials).enumerate() {
+            let (mut solids, mass) = self.solids(body, &geoms, inertial.as_ref())?;
+            weigh(&mut solids, mass);
+            let all = solids.len();
+            solids.retain(|solid| !solid.is_dummy());
+            if solids.len() < all {
+                let name = &self.links[body].name;
+                let left = all - solids.len();
+                self.notes.push(format!(
+                    "body `{name}`: {left} of {all} shapes are too small or too light and left out"
+                ));
+                weigh(&mut solids, mass);
             }
-            if let Some(mass) = mass {
-                weigh(&mut link.solids, mass);
+            self.links[body].bare_mass = if solids.is_empty() { mass } else { 0.0 };
+            self.links[body].solids = solids;
+        }
+        if let Some(total) = self.defaults.total_mass {
+            let solids = || self.links.iter().flat_map(|link| &link.solids);
+            let own = solids().map(Solid::own_mass).sum::<f64>()
+                + self.links.iter().map(|link| link.bare_mass).sum::<f64>();
+            for link in &mut self.links {
+                link.bare_mass *= total / own;
+                link.solids.iter_mut().for_each(|solid| solid.mass = Some(solid.own_mass() * total / own));
             }
         }
-        Ok(links)
+        Ok(Read { links: self.links, notes: self.notes })
     }
+
+    /// What a body consists of, and its mass, kg; 0 if nothing says it.
+    fn solids(
+        &mut self,
+        body: usize,
+        geoms: &[(Element<'a>, Isometry3<f64>)],
+        inertial: Option<&Inertial>,
+    ) -> Result<(Vec<Solid>, f64), Wrong> {
+        let touches = geoms.iter().map(|(geom, _)| touches(geom)).collect::<Result<Vec<_>, _>>()?;
+        // What touches nothing is a picture, if anything else does.
+        let all = !touches.contains(&true);
+        let (mut solids, mut mass, mut missing) = (Vec::new(), 0.0, None);
+        for ((geom, frame), touches) in geoms.iter().zip(touches) {
+            let mut solid = match self.solid(geom, frame)? {
+                Found::Solid(solid) => solid,
+                Found::Absent(file) => {
+                    missing = missing.or(Some(file));
+                    continue;
+                }
+                Found::Endless => continue,
+            };
+            let weighs = self.defaults.weighs(geom)?;
+            if !weighs {
+                solid.mass = Some(0.0);
+            }
+            mass += solid.own_mass();
+            if all || touches {
+                solids.push(solid);
+            }
+        }
+        let mass = inertial.map_or(mass, |inertial| inertial.mass);
+        if solids.is_empty() && missing.is_some() {
+            solids.extend(inertial.and_then(|own| Solid::of_inertia(own.mass, own.tensor, own.pose)));
+        }
+        if let Some(mesh) = missing {
+            let name = &self.links[body].name;
+            let what = if solids.is_empty() {
+                "it has no shape"
+            } else {
+                "a box of its inertia, or its other shapes, stand for it"
+            };
+            self.notes.push(format!("body `{name}`: mesh `{mesh}` is not there; {what}"));
+        }
+        Ok((solids, mass))
+    }
+}
+
+/// What a geom is.
+enum Found {
+    Solid(Solid),
+    /// A mesh whose file is not there.
+    Absent(String),
+    /// A plane or a height field, which is no part of a robot.
+    Endless,
 }
 
 /// How a joint of a body with this frame turns.
@@ -191,55 +309,83 @@ fn touches(geom: &Element) -> Result<bool, Wrong> {
     Ok(kinds("contype")? != 0.0 || kinds("conaffinity")? != 0.0)
 }
 
-/// The solid that a geom of a body with this frame is.
-fn solid(geom: &Element, frame: &Isometry3<f64>, defaults: &Defaults) -> Result<Solid, Wrong> {
-    let kind = if geom.text("mesh").is_some() { "mesh" } else { geom.text("type").unwrap_or("sphere") };
-    let lengths = match kind {
-        "sphere" => 1,
-        "capsule" | "cylinder" => 2,
-        "box" => 3,
-        other => {
+impl<'a> Bodies<'a> {
+    /// What a geom of a body with this frame is.
+    fn solid(&mut self, geom: &Element<'a>, frame: &Isometry3<f64>) -> Result<Found, Wrong> {
+        let kind = if geom.text("mesh").is_some() { "mesh" } else { geom.text("type").unwrap_or("sphere") };
+        let lengths = match kind {
+            "sphere" => 1,
+            "capsule" | "cylinder" => 2,
+            "box" | "ellipsoid" => 3,
+            "mesh" => {
+                let pose = frame * self.defaults.pose(geom)?;
+                return Ok(match self.assets.mesh(geom)? {
+                    Ok(mesh) => Found::Solid(self.weighed(geom, Solid::of_mesh(mesh, pose))?),
+                    Err(file) => Found::Absent(file),
+                });
+            }
+            "plane" | "hfield" => return Ok(Found::Endless),
+            other => {
+                return Err(geom.wrong(format!(
+                    "is of type `{other}`; make it a box, sphere, cylinder, capsule, ellipsoid or mesh"
+                )));
+            }
+        };
+        let ends = geom.numbers::<6>("fromto")?;
+        if ends.is_some() && kind == "sphere" {
+            return Err(geom.wrong("has fromto, but is a sphere; give its type: capsule, cylinder or box"));
+        }
+        let lengths = if ends.is_some() { 1 } else { lengths };
+        let is_flat = ["box", "ellipsoid"].contains(&kind);
+        let mut size = geom.overlaid("size")?;
+        if size.len() < lengths {
             return Err(
-                geom.wrong(format!("is of type `{other}`; make it a box, sphere, cylinder or capsule"))
+                geom.wrong(format!("has {} numbers of size, but a {kind} needs {lengths}", size.len()))
             );
         }
-    };
-    let ends = geom.numbers::<6>("fromto")?;
-    if ends.is_some() && kind == "sphere" {
-        return Err(geom.wrong("has fromto, but is a sphere; give its type: capsule, cylinder or box"));
+        let pose = match ends {
+            None => self.defaults.pose(geom)?,
+            Some([a, b, c, d, e, f]) => {
+                let (from, to) = (Vector3::new(a, b, c), Vector3::new(d, e, f));
+                let along = to - from;
+                let direction = geom.direction("fromto", along.as_slice())?;
+                // MuJoCo turns z to the first end, which shows in a box alone; otherwise `from` stays the first end.
+                let turn = z_to(&if is_flat { -direction } else { direction });
+                let half = along.norm() / 2.0;
+                size = if is_flat { vec![size[0], size[0], half] } else { vec![size[0], half] };
+                Isometry3::from_parts(Translation3::from(from + along / 2.0), turn)
+            }
+        };
+        let pose = frame * pose;
+        // Lengths are halves in MJCF.
+        let solid = match size[..] {
+            [radius, ..] if kind == "sphere" => Solid::new(Shape::Sphere { radius }, pose),
+            [radius, half, ..] if kind == "capsule" => {
+                Solid::new(Shape::Capsule { radius, length: 2.0 * half }, pose)
+            }
+            [radius, half, ..] if kind == "cylinder" => {
+                Solid::new(Shape::Cylinder { radius, length: 2.0 * half }, pose)
+            }
+            [x, y, z, ..] if kind == "ellipsoid" => {
+                let mesh = Mesh::ellipsoid([x, y, z]).map_err(|wrong| geom.wrong(wrong))?;
+                let mass = DENSITY * 4.0 / 3.0 * PI * x * y * z;
+                Solid { mass: Some(mass), ..Solid::of_mesh(Rc::new(mesh), pose) }
+            }
+            [x, y, z, ..] => Solid::new(Shape::Box { sides: [x, y, z].map(|half| 2.0 * half) }, pose),
+            _ => return Err(geom.wrong("has too few numbers of size")),
+        };
+        self.weighed(geom, solid).map(Found::Solid)
     }
-    let lengths = if ends.is_some() { 1 } else { lengths };
-    let mut size = geom.overlaid("size")?;
-    if size.len() < lengths {
-        return Err(geom.wrong(format!("has {} numbers of size, but a {kind} needs {lengths}", size.len())));
+
+    /// A solid with the mass that its geom says.
+    fn weighed(&self, geom: &Element, solid: Solid) -> Result<Solid, Wrong> {
+        let mass = match (geom.number("mass")?, geom.number("density")?) {
+            (Some(mass), _) => Some(mass),
+            (None, Some(density)) => Some(density * solid.own_mass() / DENSITY),
+            (None, None) => solid.mass,
+        };
+        Ok(Solid { mass, ..solid })
     }
-    let pose = match ends {
-        None => defaults.pose(geom)?,
-        Some([a, b, c, d, e, f]) => {
-            let (from, to) = (Vector3::new(a, b, c), Vector3::new(d, e, f));
-            let along = to - from;
-            let direction = geom.direction("fromto", along.as_slice())?;
-            // MuJoCo turns z to the first end, which shows in a box alone; otherwise `from` stays the first end.
-            let turn = z_to(&if kind == "box" { -direction } else { direction });
-            let half = along.norm() / 2.0;
-            size = if kind == "box" { vec![size[0], size[0], half] } else { vec![size[0], half] };
-            Isometry3::from_parts(Translation3::from(from + along / 2.0), turn)
-        }
-    };
-    // Lengths are halves in MJCF.
-    let shape = match size[..] {
-        [radius, ..] if kind == "sphere" => Shape::Sphere { radius },
-        [radius, half, ..] if kind == "capsule" => Shape::Capsule { radius, length: 2.0 * half },
-        [radius, half, ..] if kind == "cylinder" => Shape::Cylinder { radius, length: 2.0 * half },
-        [x, y, z, ..] => Shape::Box { sides: [x, y, z].map(|half| 2.0 * half) },
-        _ => return Err(geom.wrong("has too few numbers of size")),
-    };
-    let density = geom.number("density")?.filter(|density| *density != 0.0);
-    let mut solid = Solid { shape, pose: frame * pose, density };
-    if let Some(mass) = geom.number("mass")? {
-        weigh(std::slice::from_mut(&mut solid), mass);
-    }
-    Ok(solid)
 }
 
 #[cfg(test)]

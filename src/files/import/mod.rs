@@ -1,17 +1,28 @@
 //! Read the description of a robot, MJCF (MuJoCo) or URDF (ROS), or a recorded skeleton as a body.
 //!
-//! `mjcf` and `urdf` read links: solids in the common frame, and how each link turns on its parent. `joined` makes parts of
-//! them. `skeleton` makes links of the joints of a recording. `docs/reference.md` says what is read and what is not.
+//! `text` gathers the text, and `located` finds files. `mjcf` and `urdf` read links: solids in the common frame, and how each link
+//! turns on its parent. `mesh` puts a box around a mesh, and sensors on it. `prepared` holds, leaves out and
+//! weighs what a body cannot have as it is; `joined` makes parts of links. `skeleton` makes links of the joints of a recording. `docs/reference.md` says what is read and what is not.
 
+mod document;
 mod joined;
+mod joints;
+mod located;
+mod mesh;
 mod mjcf;
+mod notes;
+mod options;
 mod placed;
+mod prepared;
 mod read;
 mod skeleton;
+mod text;
+mod tree;
 mod units;
 mod urdf;
 mod xml;
 
-pub use self::read::{Imported, SKIN, import};
-pub(crate) use self::skeleton::names;
+pub(crate) use self::notes::names;
+pub use self::options::{Imported, Options, SKIN};
+pub use self::read::import;
 pub use self::skeleton::{Bones, body_of_skeleton};

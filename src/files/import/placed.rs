@@ -1,11 +1,18 @@
 //! Links as both kinds of file give them: solids in the common frame, and turns about places and axes in it.
 
 use std::f64::consts::PI;
+use std::rc::Rc;
 
-use nalgebra::{Isometry3, UnitQuaternion, UnitVector3, Vector3 as Column};
+use nalgebra::{Isometry3, Matrix3, Point3, UnitQuaternion, UnitVector3, Vector3 as Column};
 
-use crate::files::body::{PartEntry, ShapeName};
-use crate::stages::agent::{Shape, Vector3};
+use super::mesh::{Mesh, principal};
+use crate::files::body::{DENSITY, PartEntry, ShapeName, SkinEntry};
+use crate::stages::agent::{Shape, Spot, Vector3};
+
+/// Thickness of the thinnest solid, m. A plate that is drawn without thickness gets it.
+const THIN: f64 = 1e-3;
+/// Volume of the smallest solid, m³: a cube of 2 mm. What is smaller marks a place.
+const TINY: f64 = 8e-9;
 
 /// A solid where it is in the rest pose.
 #[derive(Debug, Clone)]
@@ -14,8 +21,12 @@ pub(super) struct Solid {
     pub shape: Shape,
     /// From the shape's frame to the common one.
     pub pose: Isometry3<f64>,
-    /// Density, kg/m³, if it is known.
-    pub density: Option<f64>,
+    /// Mass, kg, if it is known.
+    pub mass: Option<f64>,
+    /// The mesh that it stands for, and from its frame to the common one. Sensors are on the mesh.
+    pub mesh: Option<(Rc<Mesh>, Isometry3<f64>)>,
+    /// Whether it only stands for what has no shape, and carries no skin.
+    pub is_bare: bool,
 }
 
 /// One way in which a link moves on its parent.
@@ -37,6 +48,24 @@ pub(super) enum Turn {
     Other(&'static str),
 }
 
+impl Turn {
+    /// The place about which it turns, if it does.
+    pub(super) fn anchor(&self) -> Option<Column<f64>> {
+        match self {
+            Self::Hinge { anchor, .. } | Self::Ball { anchor } => Some(*anchor),
+            Self::Other(_) => None,
+        }
+    }
+
+    /// The name of a way that is no rotation.
+    pub(super) fn other(&self) -> Option<&'static str> {
+        match self {
+            Self::Other(kind) => Some(kind),
+            Self::Hinge { .. } | Self::Ball { .. } => None,
+        }
+    }
+}
+
 /// A body of MJCF or a link of URDF.
 #[derive(Debug, Clone)]
 pub(super) struct Link {
@@ -50,6 +79,17 @@ pub(super) struct Link {
     pub turns: Vec<Turn>,
     /// What it consists of.
     pub solids: Vec<Solid>,
+    /// Mass of what has no shape on it, kg.
+    pub bare_mass: f64,
+}
+
+/// What was read of a description.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Read {
+    /// Its links, each after the one that carries it.
+    pub links: Vec<Link>,
+    /// What is in another way than the description has it, in a line each.
+    pub notes: Vec<String>,
 }
 
 /// Volume, m³.
@@ -62,12 +102,16 @@ fn volume(shape: &Shape) -> f64 {
     }
 }
 
-/// Gives solids the density at which they have this mass, kg, together. A mass of 0 says nothing of them; neither does
-/// any mass of what has no volume, which is refused as a part.
+/// Gives solids this mass, kg, together: in the ratio of the masses that they have, or of their volumes if one has none. A mass of 0 says
+/// nothing of them; neither does any mass of what has no volume, which is refused as a part.
 pub(super) fn weigh(solids: &mut [Solid], mass: f64) {
-    let volume: f64 = solids.iter().map(|solid| volume(&solid.shape)).sum();
-    let density = (mass != 0.0 && volume > 0.0).then(|| mass / volume);
-    solids.iter_mut().for_each(|solid| solid.density = density);
+    let masses: Vec<f64> = solids.iter().map(Solid::own_mass).collect();
+    let volumes: Vec<f64> = solids.iter().map(|solid| volume(&solid.shape)).collect();
+    let shares = if masses.iter().all(|mass| *mass > 0.0) { masses } else { volumes };
+    let all: f64 = shares.iter().sum();
+    for (solid, share) in solids.iter_mut().zip(shares) {
+        solid.mass = (mass != 0.0 && all > 0.0).then(|| mass * (share / all));
+    }
 }
 
 /// The least rotation that takes z to a direction; about x if it is the opposite one.
@@ -87,10 +131,79 @@ fn round(number: f64) -> f64 {
     (number * 1e12).round() / 1e12 + 0.0
 }
 
+/// Without what rounding added to a product: twelve digits.
+fn significant(number: f64) -> f64 {
+    format!("{number:.11e}").parse().unwrap_or(number)
+}
+
 impl Solid {
-    /// The solid as a part that is not joined yet.
-    pub(super) fn part(&self, name: String) -> PartEntry {
-        let at = |height: f64| Some(rounded((self.pose * nalgebra::Point3::new(0.0, 0.0, height)).coords));
+    /// A solid of this shape.
+    pub(super) fn new(shape: Shape, pose: Isometry3<f64>) -> Self {
+        Self { shape, pose, mass: None, mesh: None, is_bare: false }
+    }
+
+    /// The box around a mesh in this frame.
+    pub(super) fn of_mesh(mesh: Rc<Mesh>, pose: Isometry3<f64>) -> Self {
+        let (sides, within) = mesh.bounds();
+        let shape = Shape::Box { sides: sides.map(|side| side.max(THIN)) };
+        Self { mesh: Some((mesh, pose)), ..Self::new(shape, pose * within) }
+    }
+
+    /// The box that has the inertia of a body of this mass, kg, which is about the centre of this frame, kg m². None if no box has it.
+    pub(super) fn of_inertia(mass: f64, tensor: Matrix3<f64>, pose: Isometry3<f64>) -> Option<Self> {
+        if !(mass > 0.0 && tensor.iter().all(|number| number.is_finite())) {
+            return None;
+        }
+        let (turn, [x, y, z]) = principal(tensor);
+        let pose = pose * turn;
+        let sides =
+            [y + z - x, z + x - y, x + y - z].map(|twice| (6.0 * twice / mass).max(0.0).sqrt().max(THIN));
+        sides
+            .iter()
+            .all(|side| side.is_finite())
+            .then(|| Self { mass: Some(mass), ..Self::new(Shape::Box { sides }, pose) })
+    }
+
+    /// Volume of what it stands for, m³.
+    pub(super) fn volume(&self) -> f64 {
+        self.mesh.as_ref().map_or_else(|| volume(&self.shape), |(mesh, _)| mesh.volume())
+    }
+
+    /// Its mass, kg; that of water if it is not known.
+    pub(super) fn own_mass(&self) -> f64 {
+        self.mass.unwrap_or_else(|| DENSITY * self.volume())
+    }
+
+    /// Whether it is too small or too light to be a part, such as a sphere of radius 0 that only marks a place.
+    pub(super) fn is_dummy(&self) -> bool {
+        let density = self.mass.map_or(DENSITY, |mass| mass / volume(&self.shape));
+        // What is negative is a mistake, which is refused as a part.
+        (0.0..TINY).contains(&volume(&self.shape)) || (0.0..1e-6).contains(&density)
+    }
+
+    /// Its density as a part, kg/m³, if its mass is known.
+    pub(super) fn density(&self) -> Option<f64> {
+        let mass = self.mass.or_else(|| self.mesh.as_ref().map(|_| self.own_mass()));
+        mass.map(|mass| significant(mass / volume(&self.shape)))
+    }
+
+    /// Its sensors on the mesh that it stands for: place and direction of each in the common frame. None of a shape that is no mesh:
+    /// sensors are then spread over the shape.
+    fn places(&self, skin: SkinEntry) -> Option<Vec<[f64; 6]>> {
+        let (mesh, pose) = self.mesh.as_ref()?;
+        let on_area = |density: f64| (density * mesh.area()).round() as usize;
+        let count = skin.sensors.or(skin.per_area.map(on_area)).unwrap_or_default();
+        let placed = |spot: Spot| {
+            let [x, y, z] = rounded((pose * Point3::from(spot.position)).coords);
+            let [a, b, c] = rounded(pose.rotation * Column::from(spot.normal));
+            [x, y, z, a, b, c]
+        };
+        Some(mesh.spread(count).into_iter().map(placed).collect())
+    }
+
+    /// The solid as a part that is not joined yet, with this skin if it is a mesh.
+    pub(super) fn part(&self, name: String, skin: SkinEntry) -> PartEntry {
+        let at = |height: f64| Some(rounded((self.pose * Point3::new(0.0, 0.0, height)).coords));
         let mut part = PartEntry {
             name,
             shape: ShapeName::Box,
@@ -100,12 +213,13 @@ impl Solid {
             centre: None,
             size: None,
             quaternion: None,
-            density: self.density,
+            density: self.density(),
             parent: None,
             joint: None,
             anchor: None,
             axes: None,
-            skin: None,
+            skin: self.is_bare.then_some(SkinEntry { sensors: Some(0), per_area: None }),
+            places: self.places(skin),
         };
         match self.shape {
             Shape::Cylinder { radius, length } | Shape::Capsule { radius, length } => {

@@ -2,49 +2,62 @@
 
 use std::path::Path;
 
-use roxmltree::Document;
-
+use super::document::Wrong;
+use super::document::parsed;
 use super::joined::joined;
-use super::xml::Wrong;
+use super::located::Located;
+use super::options::{Imported, Options};
+use super::placed::Read;
+use super::text::written_out;
 use super::{mjcf, urdf};
-use crate::files::body::{BodyFile, SkinEntry};
+use crate::files::body::BodyFile;
 use crate::files::error::FileError;
-use crate::files::whole::read_text;
+use crate::stages::agent::{Agent, Part};
 
-/// Skin of each part of an imported body, if the user says nothing.
-pub const SKIN: SkinEntry = SkinEntry { sensors: Some(40), per_area: None };
+/// Extent of a body, m, from which on a note asks for its unit.
+const LARGE: f64 = 20.0;
 
-/// A body that was read from the description of a robot.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Imported {
-    /// The body.
-    pub file: BodyFile,
-    /// What it has in another way than the description, in a line each.
-    pub notes: Vec<String>,
-}
-
-/// Reads MJCF or URDF, whichever it is, as a body with this skin.
+/// Reads MJCF or URDF, whichever it is, as a body.
 ///
 /// # Errors
 /// If the file cannot be read, or is no body: the message says what is wrong and what to do.
-pub fn import(path: &Path, skin: SkinEntry) -> Result<Imported, FileError> {
-    imported(&read_text(path)?, skin).map_err(|message| FileError::new(path, message))
+pub fn import(path: &Path, options: &Options) -> Result<Imported, FileError> {
+    let files = Located::beside(path);
+    written_out(path, &files)
+        .and_then(|text| imported(&text, &files, options))
+        .map_err(|message| FileError::new(path, message))
 }
 
-fn imported(text: &str, skin: SkinEntry) -> Result<Imported, Wrong> {
-    let document = Document::parse(text)
-        .map_err(|error| format!("this is not well-formed XML, as MJCF and URDF must be: {error}"))?;
+fn imported(text: &str, files: &Located, options: &Options) -> Result<Imported, Wrong> {
+    let document = parsed(text)?;
     let root = document.root_element();
-    let (parts, notes) = match root.tag_name().name() {
-        "mujoco" => joined("body", &mjcf::links(root)?)?,
-        "robot" => joined("link", &urdf::links(root)?)?,
+    let (word, Read { links, mut notes }) = match root.tag_name().name() {
+        "mujoco" => ("body", mjcf::links(root, files, options.strict)?),
+        "robot" => ("link", urdf::links(root, files)?),
         other => {
             return Err(format!("its root is <{other}>, but must be <mujoco> (MJCF) or <robot> (URDF)"));
         }
     };
-    let file = BodyFile { density: None, skin: Some(skin), parts };
-    file.body()?;
+    let (parts, more) = joined(word, links, options)?;
+    notes.extend(more);
+    let file = BodyFile { density: None, skin: Some(options.skin), parts };
+    let body = file.body()?;
+    notes.extend(far(&body.agent));
     Ok(Imported { file, notes })
+}
+
+/// Says if a body is larger than any robot: then its lengths may be in another unit.
+fn far(agent: &Agent) -> Option<String> {
+    let reach = |axis: usize| {
+        let along = |part: &Part| part.centre[axis];
+        let most = agent.parts.iter().map(along).fold(f64::NEG_INFINITY, f64::max);
+        let largest = agent.parts.iter().map(|part| part.shape.half_length()).fold(0.0, f64::max);
+        most - agent.parts.iter().map(along).fold(f64::INFINITY, f64::min) + largest
+    };
+    let span = (0..3).map(reach).fold(0.0, f64::max);
+    (span > LARGE).then(|| {
+        format!("the body spans {span:.0} m; if its lengths or meshes are in millimetres, give them in m (scale=\"0.001 0.001 0.001\")")
+    })
 }
 
 #[cfg(test)]

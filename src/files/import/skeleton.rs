@@ -2,11 +2,12 @@
 
 use nalgebra::{Isometry3, Translation3, UnitVector3, Vector3 as Column};
 
+use super::document::Wrong;
 use super::joined::joined;
+use super::notes::names;
+use super::options::{Imported, Options};
 use super::placed::{Link, Solid, Turn, z_to};
-use super::read::Imported;
 use super::units::{longest_way, unit};
-use super::xml::Wrong;
 use crate::files::body::{BodyFile, SkinEntry};
 use crate::numerics::range::is_moderate;
 use crate::stages::agent::Shape;
@@ -81,7 +82,7 @@ pub fn body_of_skeleton(
     let mut skeleton = Skeleton::new(movement, scale);
     skeleton.notes.extend(note);
     let links = skeleton.links()?;
-    let (mut parts, notes) = joined("joint", &links)?;
+    let (mut parts, notes) = joined("joint", links, &Options { skin, ..Options::default() })?;
     let mut bare = 0;
     for part in &mut parts {
         let [from, to] = [part.from, part.to].map(|end| Column::from(end.unwrap_or_default()));
@@ -261,7 +262,7 @@ impl<'a> Skeleton<'a> {
     fn link(&self, joint: usize, parent: Option<usize>, turns: Vec<Turn>) -> Link {
         let origin = self.places[joint];
         let solids = self.bones[joint].iter().map(|bone| capsule(origin, *bone)).collect();
-        Link { name: self.name(joint).to_owned(), parent, origin, turns, solids }
+        Link { name: self.name(joint).to_owned(), parent, origin, turns, solids, bare_mass: 0.0 }
     }
 
     /// Notes what is not as in the file.
@@ -308,7 +309,7 @@ fn capsule(from: Column<f64>, bone: Column<f64>) -> Solid {
     let length = bone.norm();
     let turn = z_to(&UnitVector3::new_normalize(bone));
     let pose = Isometry3::from_parts(Translation3::from(from + bone / 2.0), turn);
-    Solid { shape: Shape::Capsule { radius: RADIUS * length, length }, pose, density: None }
+    Solid::new(Shape::Capsule { radius: RADIUS * length, length }, pose)
 }
 
 fn move_link(link: &mut Link, way: Column<f64>) {
@@ -322,15 +323,6 @@ fn move_link(link: &mut Link, way: Column<f64>) {
     for solid in &mut link.solids {
         solid.pose.translation.vector += way;
     }
-}
-
-/// How many names there are, and the first of them; `None` if there is none.
-pub(crate) fn names<'a>(names: impl Iterator<Item = &'a str>) -> Option<String> {
-    const MOST: usize = 6;
-    let names: Vec<&str> = names.collect();
-    let more = if names.len() > MOST { ", …" } else { "" };
-    let first = names[..names.len().min(MOST)].join(", ");
-    (!names.is_empty()).then(|| format!("({}): {first}{more}", names.len()))
 }
 
 #[cfg(test)]

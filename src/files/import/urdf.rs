@@ -1,12 +1,17 @@
 //! Read URDF, the description that ROS reads: links, and joints between them.
 
 use std::collections::{HashMap, HashSet};
+use std::rc::Rc;
 
-use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
+use nalgebra::{Isometry3, Matrix3, Translation3, UnitQuaternion, Vector3};
 use roxmltree::Node;
 
-use super::placed::{Link, Solid, Turn, weigh};
-use super::xml::{Element, Wrong};
+use super::document::Wrong;
+use super::located::Located;
+use super::mesh;
+use super::notes::names;
+use super::placed::{Link, Read, Solid, Turn, weigh};
+use super::xml::Element;
 use crate::stages::agent::Shape;
 
 /// A joint by the places of its links among all links.
@@ -18,7 +23,7 @@ struct Joint<'a> {
 }
 
 /// The links of the element `robot`, each after the one that carries it.
-pub(super) fn links<'a>(root: Node<'a, 'a>) -> Result<Vec<Link>, Wrong> {
+pub(super) fn links<'a>(root: Node<'a, 'a>, files: &Located) -> Result<Read, Wrong> {
     let is_macro = |node: &Node| node.tag_name().namespace().is_some_and(|space| space.contains("xacro"));
     if let Some(node) = root.descendants().find(is_macro) {
         let wrong = Element::new(node.tag_name().name(), node);
@@ -49,10 +54,14 @@ pub(super) fn links<'a>(root: Node<'a, 'a>) -> Result<Vec<Link>, Wrong> {
         let (parent, child) = (end("parent")?, end("child")?);
         joints.push(Joint { element, node, parent, child });
     }
-    let names: Vec<&str> = nodes.iter().map(|(name, _)| *name).collect();
-    let mut links: Vec<Link> = Vec::new();
+    let link_names: Vec<&str> = nodes.iter().map(|(name, _)| *name).collect();
+    let (mut links, mut notes): (Vec<Link>, Vec<String>) = Default::default();
+    let mimics = joints.iter().filter(|joint| child(joint.node, "mimic").is_some());
+    if let Some(names) = names(mimics.filter_map(|joint| joint.node.attribute("name"))) {
+        notes.push(format!("joints that follow others (mimic) move by themselves {names}"));
+    }
     let mut frames: Vec<Isometry3<f64>> = Vec::new();
-    for (at, joint) in ordered(&names, &joints)? {
+    for (at, joint) in ordered(&link_names, &joints)? {
         // Where the link is among those that are read, and its frame.
         let (name, node) = nodes[at];
         let (mut parent, mut frame, mut turns) = (None, Isometry3::identity(), Vec::new());
@@ -61,11 +70,12 @@ pub(super) fn links<'a>(root: Node<'a, 'a>) -> Result<Vec<Link>, Wrong> {
             parent = Some(below);
             turns.extend(turn(joint, &frame)?);
         }
-        let solids = solids(name, node, &frame)?;
-        links.push(Link { name: name.to_owned(), parent, origin: frame.translation.vector, turns, solids });
+        let (solids, bare_mass) = Reader { name, node, frame, files }.solids(&mut notes)?;
+        let origin = frame.translation.vector;
+        links.push(Link { name: name.to_owned(), parent, origin, turns, solids, bare_mass });
         frames.push(frame);
     }
-    Ok(links)
+    Ok(Read { links, notes })
 }
 
 /// Links in the order in which each comes after the one that carries it, and all on one together; each with its joint and
@@ -84,16 +94,9 @@ fn ordered<'j, 'a>(
         }
         carried[joint.parent].push(joint);
     }
-    let roots: Vec<usize> = (0..names.len()).filter(|at| !is_carried.contains(at)).collect();
-    if let [first, second, ..] = roots[..] {
-        return Err(format!(
-            "links `{}` and `{}` are both roots, which no joint carries; join one to the other or remove it",
-            names[first], names[second]
-        ));
-    }
+    let roots = (0..names.len()).rev().filter(|at| !is_carried.contains(at));
     let mut order = Vec::new();
-    let mut next: Vec<(usize, Option<(&Joint, usize)>)> =
-        roots.into_iter().map(|root| (root, None)).collect();
+    let mut next: Vec<(usize, Option<(&Joint, usize)>)> = roots.map(|root| (root, None)).collect();
     while let Some((at, joint)) = next.pop() {
         next.extend(carried[at].iter().rev().map(|joint| (joint.child, Some((*joint, order.len())))));
         order.push((at, joint));
@@ -134,7 +137,7 @@ fn turn(joint: &Joint, frame: &Isometry3<f64>) -> Result<Option<Turn>, Wrong> {
             let axis = match child(joint.node, "axis") {
                 Some(axis) => {
                     let axis = element.part(axis);
-                    axis.direction("xyz", &axis.needed_numbers::<3>("xyz")?)?
+                    axis.direction("xyz", &axis.numbers::<3>("xyz")?.unwrap_or([1.0, 0.0, 0.0]))?
                 }
                 None => Vector3::x_axis(),
             };
@@ -153,57 +156,125 @@ fn turn(joint: &Joint, frame: &Isometry3<f64>) -> Result<Option<Turn>, Wrong> {
     }))
 }
 
-/// What a link with this frame consists of: what it collides with, or else what it looks like.
-fn solids(name: &str, link: Node, frame: &Isometry3<f64>) -> Result<Vec<Solid>, Wrong> {
-    let element = labelled("link", name, link);
-    let mut meshes = false;
-    for tag in ["collision", "visual"] {
-        let mut solids = Vec::new();
-        let mut is_whole = true;
-        for node in link.children().filter(|node| node.has_tag_name(tag)) {
+/// A link that is read.
+struct Reader<'a, 'f> {
+    name: &'a str,
+    node: Node<'a, 'a>,
+    frame: Isometry3<f64>,
+    files: &'f Located,
+}
+
+impl<'a> Reader<'a, '_> {
+    fn element(&self) -> Element<'a> {
+        labelled("link", self.name, self.node)
+    }
+
+    /// What the link consists of: what it collides with, or else what it looks like, or else a box of its inertia; and the mass of
+    /// a link without any, kg.
+    fn solids(&self, notes: &mut Vec<String>) -> Result<(Vec<Solid>, f64), Wrong> {
+        let name = self.name;
+        let inertial = child(self.node, "inertial");
+        let mass = match inertial.and_then(|inertial| child(inertial, "mass")) {
+            Some(mass) => self.element().part(mass).needed_number("value")?,
+            None => 0.0,
+        };
+        let (mut solids, mut missing) = (Vec::new(), None);
+        for tag in ["collision", "visual"] {
+            let (found, absent) = self.shapes(tag)?;
+            missing = missing.or(absent.clone());
+            // What only marks a place is no shape, if there is another one.
+            let is_real = found.iter().any(|solid| !solid.is_dummy());
+            if solids.is_empty() || is_real && absent.is_none() {
+                solids = found;
+            }
+            if is_real && absent.is_none() {
+                break;
+            }
+        }
+        if solids.is_empty() && missing.is_some() {
+            solids.extend(self.inertia_box(inertial, mass)?);
+        }
+        if let Some(mesh) = missing {
+            let what = if solids.is_empty() {
+                "it has no shape"
+            } else {
+                "a box of its inertia, or its other shapes, stand for it"
+            };
+            notes.push(format!("link `{name}`: mesh `{mesh}` is not there; {what}"));
+        }
+        weigh(&mut solids, mass);
+        let all = solids.len();
+        solids.retain(|solid| !solid.is_dummy());
+        if solids.len() < all {
+            notes.push(format!(
+                "link `{name}`: {} of {all} shapes are too small or too light and left out",
+                all - solids.len()
+            ));
+            weigh(&mut solids, mass);
+        }
+        let bare_mass = if solids.is_empty() { mass } else { 0.0 };
+        Ok((solids, bare_mass))
+    }
+
+    /// The shapes that the link has as `tag`, and the first mesh that is not there.
+    fn shapes(&self, tag: &str) -> Result<(Vec<Solid>, Option<String>), Wrong> {
+        let (mut solids, mut missing) = (Vec::new(), None);
+        for node in self.node.children().filter(|node| node.has_tag_name(tag)) {
             let geometry = child(node, "geometry").and_then(|geometry| geometry.first_element_child());
             let Some(geometry) = geometry else {
                 return Err(
-                    labelled("link", name, node).wrong(format!("has a {tag} without geometry; add it"))
+                    labelled("link", self.name, node).wrong(format!("has a {tag} without geometry; add it"))
                 );
             };
-            match shape(&element.part(geometry))? {
-                Some(shape) => {
-                    let pose = frame * origin(&element, node)?;
-                    solids.push(Solid { shape, pose, density: None });
+            let geometry = self.element().part(geometry);
+            let pose = self.frame * origin(&self.element(), node)?;
+            if geometry.tag() != "mesh" {
+                solids.push(Solid::new(shape(&geometry)?, pose));
+                continue;
+            }
+            let file = geometry.needed("filename")?;
+            match self.files.find("", file).map_err(|wrong| geometry.wrong(wrong))? {
+                Some(path) => {
+                    let scale = geometry.numbers("scale")?.unwrap_or([1.0; 3]);
+                    let mesh = mesh::read(&path).and_then(|mesh| mesh.scaled(scale));
+                    solids.push(Solid::of_mesh(
+                        Rc::new(mesh.map_err(|wrong| geometry.wrong(format!("cannot be read: {wrong}")))?),
+                        pose,
+                    ));
                 }
-                None => is_whole = false,
+                None => missing = missing.or(Some(file.to_owned())),
             }
         }
-        meshes |= !is_whole;
-        if is_whole && !solids.is_empty() {
-            if let Some(inertial) = child(link, "inertial")
-                && let Some(mass) = child(inertial, "mass")
-            {
-                weigh(&mut solids, element.part(mass).needed_number("value")?);
-            }
-            return Ok(solids);
-        }
+        Ok((solids, missing))
     }
-    if meshes {
-        Err(element.wrong("has a mesh; give it boxes, spheres, cylinders or capsules as its collision"))
-    } else {
-        Ok(Vec::new())
+
+    /// The box of the link's inertia, if it has one.
+    fn inertia_box(&self, inertial: Option<Node<'a, 'a>>, mass: f64) -> Result<Option<Solid>, Wrong> {
+        let Some((inertial, inertia)) = inertial.and_then(|node| Some((node, child(node, "inertia")?)))
+        else {
+            return Ok(None);
+        };
+        let inertia = self.element().part(inertia);
+        let number = |key: &str| Ok::<_, Wrong>(inertia.number(key)?.unwrap_or_default());
+        let [xx, yy, zz] = [number("ixx")?, number("iyy")?, number("izz")?];
+        let [xy, xz, yz] = [number("ixy")?, number("ixz")?, number("iyz")?];
+        let tensor = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
+        let pose = self.frame * origin(&self.element(), inertial)?;
+        Ok(Solid::of_inertia(mass, tensor, pose))
     }
 }
 
-/// The shape that a geometry names, in whole lengths; none of a mesh.
-fn shape(geometry: &Element) -> Result<Option<Shape>, Wrong> {
+/// The shape that a geometry names, in whole lengths.
+fn shape(geometry: &Element) -> Result<Shape, Wrong> {
     let radius = || geometry.needed_number("radius");
     let length = || geometry.needed_number("length");
-    Ok(Some(match geometry.tag() {
+    Ok(match geometry.tag() {
         "box" => Shape::Box { sides: geometry.needed_numbers("size")? },
         "sphere" => Shape::Sphere { radius: radius()? },
         "cylinder" => Shape::Cylinder { radius: radius()?, length: length()? },
         "capsule" => Shape::Capsule { radius: radius()?, length: length()? },
-        "mesh" => return Ok(None),
-        _ => return Err(geometry.wrong("is not supported; make it a box, sphere, cylinder or capsule")),
-    }))
+        _ => return Err(geometry.wrong("is not supported; make it a box, sphere, cylinder, capsule or mesh")),
+    })
 }
 
 #[cfg(test)]

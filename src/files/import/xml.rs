@@ -3,8 +3,7 @@
 use nalgebra::{UnitVector3, Vector3};
 use roxmltree::Node;
 
-/// What is wrong with a description.
-pub(super) type Wrong = String;
+use super::document::{Wrong, place};
 
 /// Largest number that is read: sums and products of such numbers are numbers still.
 const LARGEST: f64 = 1e9;
@@ -40,7 +39,7 @@ impl<'a> Element<'a> {
 
     /// A message that says where the element is.
     pub(super) fn wrong(&self, message: impl std::fmt::Display) -> Wrong {
-        format!("line {}: {} {message}", line(self.levels[0]), self.label)
+        format!("{}: {} {message}", place(self.levels[0]), self.label)
     }
 
     /// An attribute, as it is written.
@@ -108,9 +107,4 @@ impl<'a> Element<'a> {
 fn parsed(text: &str) -> Option<Vec<f64>> {
     let number = |word: &str| word.parse().ok().filter(|number: &f64| number.abs() <= LARGEST);
     text.split_whitespace().map(number).collect()
-}
-
-/// The line on which an element begins.
-pub(super) fn line(node: Node) -> u32 {
-    node.document().text_pos_at(node.range().start).row
 }

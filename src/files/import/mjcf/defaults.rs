@@ -5,8 +5,10 @@ use std::collections::HashMap;
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion, Vector3};
 use roxmltree::Node;
 
+use crate::files::import::document::Wrong;
+use crate::files::import::document::place;
 use crate::files::import::placed::z_to;
-use crate::files::import::xml::{Element, Wrong, line};
+use crate::files::import::xml::Element;
 
 /// Attributes that turn a frame, of which an element has one.
 const TURNS: [&str; 5] = ["quat", "axisangle", "euler", "xyaxes", "zaxis"];
@@ -22,6 +24,14 @@ pub(super) struct Defaults<'a> {
     euler: &'a str,
     /// Whether masses are those of the geoms alone.
     pub weighs_geoms: bool,
+    /// Groups of geoms that have mass.
+    groups: [f64; 2],
+    /// The mass of all bodies, kg, if it is set.
+    pub total_mass: Option<f64>,
+    /// Folder of meshes, as the description names it.
+    pub mesh_folder: &'a str,
+    /// Whether folders in names of files are left out.
+    pub strips_paths: bool,
 }
 
 impl<'a> Defaults<'a> {
@@ -44,6 +54,10 @@ impl<'a> Defaults<'a> {
                 "compiler has eulerseq `{euler}`, which must be three of x, y, z, X, Y and Z"
             ));
         }
+        let own = compiler.iter().map(|node| Element::new("compiler", *node)).collect::<Vec<_>>();
+        fn number<const N: usize>(own: &[Element], key: &str) -> Result<Option<[f64; N]>, Wrong> {
+            own.iter().find_map(|compiler| compiler.numbers(key).transpose()).transpose()
+        }
         let sections = root.children().filter(|node| node.has_tag_name("default"));
         let mut top: Vec<Node> = sections.collect();
         let mut classes = HashMap::new();
@@ -52,7 +66,7 @@ impl<'a> Defaults<'a> {
                 match node.attribute("class") {
                     Some(class) => _ = classes.insert(class, node),
                     None if node == *section => {}
-                    None => return Err(format!("line {}: default lacks class; add it", line(node))),
+                    None => return Err(format!("{}: default lacks class; add it", place(node))),
                 }
             }
         }
@@ -63,6 +77,10 @@ impl<'a> Defaults<'a> {
             is_in_radians: setting("angle") == Some("radian"),
             euler,
             weighs_geoms: setting("inertiafromgeom") == Some("true"),
+            groups: number(&own, "inertiagrouprange")?.unwrap_or([0.0, 1e9]),
+            total_mass: number::<1>(&own, "settotalmass")?.map(|[mass]| mass).filter(|mass| *mass > 0.0),
+            mesh_folder: setting("meshdir").or(setting("assetdir")).unwrap_or(""),
+            strips_paths: setting("strippath") == Some("true"),
         })
     }
 
@@ -74,6 +92,27 @@ impl<'a> Defaults<'a> {
         node: Node<'a, 'a>,
         surroundings: Option<&'a str>,
     ) -> Result<Element<'a>, Wrong> {
+        self.over_named(label, node, surroundings, node.tag_name().name())
+    }
+
+    /// An element over the defaults that hold for elements of the kind `tag`.
+    pub(super) fn over_as(&self, label: String, node: Node<'a, 'a>, tag: &str) -> Result<Element<'a>, Wrong> {
+        self.over_named(label, node, None, tag)
+    }
+
+    /// Whether a geom has mass.
+    pub(super) fn weighs(&self, geom: &Element) -> Result<bool, Wrong> {
+        let group = geom.number("group")?.unwrap_or_default();
+        Ok((self.groups[0]..=self.groups[1]).contains(&group))
+    }
+
+    fn over_named(
+        &self,
+        label: String,
+        node: Node<'a, 'a>,
+        surroundings: Option<&'a str>,
+        tag: &str,
+    ) -> Result<Element<'a>, Wrong> {
         let element = Element::new(label, node);
         let class = node.attribute("class").or(surroundings);
         let own = match class.filter(|&class| class != "main") {
@@ -84,7 +123,6 @@ impl<'a> Defaults<'a> {
         };
         let around = own.into_iter().flat_map(|class| class.ancestors());
         let sections = around.take_while(|node| node.has_tag_name("default")).chain(self.top.iter().copied());
-        let tag = node.tag_name().name();
         Ok(element
             .over(sections.flat_map(|section| section.children()).filter(|node| node.has_tag_name(tag))))
     }

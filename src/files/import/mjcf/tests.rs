@@ -1,11 +1,19 @@
 //! Test that MJCF means what MuJoCo's documentation says, by hand-computed places and axes, and that every mistake is named.
 
+use std::path::Path;
+
 use roxmltree::Document;
 
 use super::*;
 
+/// What is read of a description in this folder.
+fn read_in(folder: &Path, text: &str, strict: bool) -> Result<Read, Wrong> {
+    let files = Located::beside(&folder.join("m.xml"));
+    links(Document::parse(text).unwrap().root_element(), &files, strict)
+}
+
 fn read(text: &str) -> Result<Vec<Link>, Wrong> {
-    links(Document::parse(text).unwrap().root_element())
+    read_in(Path::new(""), text, false).map(|read| read.links)
 }
 
 /// The bodies of a world, after other sections.
@@ -122,11 +130,10 @@ fn classes_give_what_elements_lack() {
     .unwrap();
     let capsule = |radius, length| Shape::Capsule { radius, length };
     assert_eq!(links[0].solids[0].shape, capsule(0.1, 0.4));
-    assert_eq!(links[0].solids[0].density, Some(500.0));
+    assert_eq!(links[0].solids[0].density(), Some(500.0));
     let shapes: Vec<Shape> = links[1].solids.iter().map(|solid| solid.shape).collect();
     assert_eq!(shapes, [capsule(0.3, 0.4), Shape::Sphere { radius: 0.3 }, capsule(0.4, 1.0)]);
-    let volume = 4.0 / 3.0 * std::f64::consts::PI * 0.027;
-    assert!((links[1].solids[1].density.unwrap() * volume - 2.0).abs() < 1e-9);
+    assert_eq!(links[1].solids[1].mass, Some(2.0));
     assert_eq!(links[2].solids[0].shape, capsule(0.3, 0.4));
     let [Turn::Hinge { axis, .. }, Turn::Ball { anchor }] = &links[2].turns[..] else { panic!("{links:?}") };
     near(*axis, X);
@@ -136,7 +143,8 @@ fn classes_give_what_elements_lack() {
 #[test]
 fn pictures_are_left_out_beside_what_touches() {
     let picture = "<geom type='mesh' mesh='m' contype='0' conaffinity='0'/>";
-    let one = world("", &format!("<body>{picture}<geom size='1'/></body>")).unwrap();
+    let asset = "<asset><mesh name='m' file='gone.stl'/></asset>";
+    let one = world(asset, &format!("<body>{picture}<geom size='1'/></body>")).unwrap();
     assert_eq!(one[0].solids.len(), 1);
     // All are pictures: then they are the body.
     let two = "<body><geom size='1' contype='0' conaffinity='0'/><geom size='2' contype='0' conaffinity='0'/></body>";
@@ -151,11 +159,62 @@ fn pictures_are_left_out_beside_what_touches() {
 fn masses_of_bodies_are_spread_over_their_volume() {
     let bodies = "<body><inertial pos='0 0 0' mass='3'/><geom type='box' size='0.5 0.5 0.5' mass='9'/>
         <geom type='box' size='0.5 0.5 1' density='9'/></body>";
-    let densities = |sections| {
-        world(sections, bodies).unwrap()[0].solids.iter().map(|solid| solid.density).collect::<Vec<_>>()
-    };
+    let densities =
+        |sections| world(sections, bodies).unwrap()[0].solids.iter().map(Solid::density).collect::<Vec<_>>();
+    // In the ratio of their own masses, 9 and 18.
     assert_eq!(densities(""), [Some(1.0), Some(1.0)]);
     assert_eq!(densities("<compiler inertiafromgeom='true'/>"), [Some(9.0), Some(9.0)]);
+}
+
+#[test]
+fn pictures_weigh_and_only_shapes_of_the_named_groups_do() {
+    let box_of = |attributes: &str| format!("<geom type='box' size='0.1 0.1 0.1' {attributes}/>");
+    let picture = "contype='0' conaffinity='0'";
+    let mass = |sections: &str, geoms: &[String]| {
+        let links = world(sections, &format!("<body name='a'>{}</body>", geoms.concat())).unwrap();
+        (links[0].solids.len(), links[0].solids.iter().map(Solid::own_mass).sum::<f64>() + links[0].bare_mass)
+    };
+    assert_eq!(mass("", &[box_of("mass='0'"), box_of(&format!("mass='3' {picture}"))]), (1, 3.0));
+    let two = [box_of("mass='2' group='1'"), box_of("mass='5' group='3'")];
+    assert_eq!(mass("<compiler inertiagrouprange='0 2'/>", &two), (2, 2.0));
+    assert_eq!(mass("<compiler settotalmass='21'/>", &two), (2, 21.0));
+    let dummy = mass("", &["<geom size='0.0001' mass='4'/>".to_owned()]);
+    assert_eq!(dummy, (0, 4.0));
+}
+
+#[test]
+fn meshes_and_ellipsoids_are_boxes_around_them() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::create_dir(folder.path().join("parts")).unwrap();
+    let corners = "v 1 1 1\nv 3 1 1\nv 1 5 1\nv 1 1 7\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+    std::fs::write(folder.path().join("parts/m.obj"), corners).unwrap();
+    let text = |asset: &str, geom: &str| {
+        format!(
+            "<mujoco><compiler meshdir='parts'/><asset>{asset}</asset><worldbody><body name='a'>
+             <inertial pos='0 0 0' mass='6' diaginertia='1 1 1'/>{geom}</body></worldbody></mujoco>"
+        )
+    };
+    let read = |asset: &str, geom: &str| read_in(folder.path(), &text(asset, geom), false).unwrap();
+    let geom = "<geom type='mesh' mesh='m' pos='0 0 10'/>";
+    let found = read("<mesh file='m.obj' scale='1 1 0.5' refpos='1 1 1'/>", geom);
+    let solid = &found.links[0].solids[0];
+    assert_eq!((solid.shape, solid.mass), (Shape::Box { sides: [2.0, 4.0, 3.0] }, Some(6.0)));
+    near(solid.pose.translation.vector, [1.0, 2.0, 11.5]);
+    // Not there: the box that has the inertia.
+    let absent = read("<mesh name='m' file='gone.stl'/>", geom);
+    assert_eq!(absent.links[0].solids[0].shape, Shape::Box { sides: [1.0; 3] });
+    assert!(absent.notes[0].starts_with("body `a`: mesh `gone.stl` is not there"), "{:?}", absent.notes);
+
+    let ellipsoid = solid_of("", "<geom type='ellipsoid' size='0.1 0.2 0.3'/>");
+    let Shape::Box { sides } = ellipsoid.shape else { panic!("{ellipsoid:?}") };
+    assert!(sides.iter().zip([0.2, 0.4, 0.6]).all(|(a, b)| (a - b).abs() < 1e-9), "{sides:?}");
+    assert!((ellipsoid.own_mass() - 1000.0 * 4.0 / 3.0 * PI * 0.006).abs() < 1e-9);
+    assert!(
+        world("", "<body name='a'><geom size='1'/><geom type='plane' size='1 1 1'/></body>").unwrap()[0]
+            .solids
+            .len()
+            == 1
+    );
 }
 
 #[test]
@@ -178,12 +237,12 @@ fn the_world_is_no_body() {
 fn every_mistake_is_named_with_its_line_and_body() {
     for (bodies, expected) in [
         (
-            "\n<body name='a'><geom type='mesh'/></body>",
-            "line 2: geom of body `a` is of type `mesh`; make it a box",
+            "\n<body name='a'><geom type='sdf'/></body>",
+            "line 2: geom of body `a` is of type `sdf`; make it a box",
         ),
-        ("<body name='a'><geom mesh='m' size='1'/></body>", "geom of body `a` is of type `mesh`"),
-        ("<body name='a'><geom type='ellipsoid' size='1 1 1'/></body>", "is of type `ellipsoid`"),
-        ("<body name='a'><geom type='plane' size='1 1 1'/></body>", "is of type `plane`"),
+        ("<body name='a'><geom type='mesh'/></body>", "geom of body `a` lacks mesh; add it"),
+        ("<body name='a'><geom mesh='m' size='1'/></body>", "has mesh `m`, which no asset is"),
+        ("<body name='a'><geom type='ellipsoid' size='1 1'/></body>", "but a ellipsoid needs 3"),
         ("<body name='a'><geom/></body>", "geom of body `a` has 0 numbers of size, but a sphere needs 1"),
         (
             "<body name='a'><geom type='capsule' size='1'/></body>",
@@ -210,17 +269,13 @@ fn every_mistake_is_named_with_its_line_and_body() {
         ("<body name='a'><joint axis='0 0 0'/></body>", "joint of body `a` has axis of length 0"),
         ("<body name='a'><joint type='screw'/></body>", "joint of body `a` has type `screw`"),
         ("<body name='a'><inertial/></body>", "inertial of body `a` lacks mass"),
-        (
-            "<body name='a'><include file='b.xml'/></body>",
-            "include is not supported; insert the content of that file",
-        ),
-        ("<body name='a'><replicate count='3'/></body>", "replicate of body `a` is not supported; write out"),
+        ("<body name='a'><attach model='b'/></body>", "attach of body `a` is not supported; write out"),
     ] {
         let message = world("", bodies).unwrap_err();
         assert!(message.contains(expected), "{bodies:?} gave {message:?}");
     }
     for (sections, expected) in [
-        ("<include file='b.xml'/>", "line 1: include is not supported"),
+        ("<compiler settotalmass='x'/>", "compiler has settotalmass `x`, which must be a number"),
         ("<compiler angle='turn'/>", "compiler has angle `turn`"),
         ("<compiler coordinate='global'/>", "compiler has coordinate `global`"),
         ("<compiler eulerseq='xy'/>", "compiler has eulerseq `xy`"),
@@ -236,12 +291,20 @@ fn every_mistake_is_named_with_its_line_and_body() {
 fn what_a_tree_has_not_or_nobody_knows_is_refused() {
     let pair = "<body name='a'><geom size='0.1'/><body name='b'><joint/><geom size='0.1'/></body></body>";
     for tie in ["<weld body1='a' body2='b'/>", "<connect body1='a' body2='b' anchor='0 0 0'/>"] {
-        let tied = world(&format!("<equality>{tie}</equality>"), pair);
-        assert!(tied.unwrap_err().contains("joins bodies in addition to the tree"));
+        let text = |before: &str, tie: &str| {
+            format!("<mujoco>{before}<equality>{tie}</equality><worldbody>{pair}</worldbody></mujoco>")
+        };
+        let read = |before: &str, tie: &str, strict| read_in(Path::new(""), &text(before, tie), strict);
+        assert!(read("", tie, true).unwrap_err().contains("joins bodies in addition to the tree"));
+        let note = "bodies are tied together in addition to the tree, which is left out (1): a with b";
+        assert_eq!(read("", tie, false).unwrap().notes, [note]);
         let loose = tie.replace("/>", " active='false'/>");
-        assert!(world(&format!("<equality>{loose}</equality>"), pair).is_ok());
+        let world = tie.replace("'a'", "'world'");
+        let by_default = "<default><equality active='false'/></default>";
+        for (before, tie) in [("", &*loose), ("", &*world), (by_default, tie), ("", "<joint joint1='x'/>")] {
+            assert!(read(before, tie, true).unwrap().notes.is_empty(), "{before} {tie}");
+        }
     }
-    assert!(world("<equality><joint joint1='x'/></equality>", pair).is_ok());
     for (inside, expected) in [
         ("<bodi/>", "bodi of body `a` is unknown here"),
         ("<geom size='0.1'><geom size='0.1'/></geom>", "geom is within an element that cannot contain it"),

@@ -1,10 +1,14 @@
 //! Test that both kinds of file give the same body, and that a file which is neither is refused in a line.
 
 use super::*;
-use crate::files::body::{JointName, PartEntry};
+use crate::files::body::{JointName, PartEntry, SkinEntry};
 use crate::stages::agent::{Freedom, Vector3};
 
 const SKIN: SkinEntry = SkinEntry { sensors: Some(4), per_area: None };
+
+fn imported(text: &str, skin: SkinEntry) -> Result<Imported, Wrong> {
+    super::imported(text, &Located::beside(Path::new("")), &Options { skin, ..Options::default() })
+}
 
 fn near(a: Vector3, b: Vector3) -> bool {
     a.iter().zip(&b).all(|(a, b)| (a - b).abs() < 1e-9)
@@ -116,6 +120,13 @@ fn both_kinds_of_file_give_the_same_body() {
     }
 }
 
+/// Entities that stand for a billion letters.
+fn bomb() -> String {
+    let level = |at: usize| format!("<!ENTITY b{} '{}'>", at + 1, format!("&b{at};").repeat(10));
+    let levels: String = (0..9).map(level).collect();
+    format!("<!DOCTYPE a [<!ENTITY b0 'x'>{levels}]><mujoco>&b9;</mujoco>")
+}
+
 #[test]
 fn what_is_neither_kind_is_refused() {
     for (text, expected) in [
@@ -123,7 +134,8 @@ fn what_is_neither_kind_is_refused() {
         ("<mujoco>", "not well-formed XML"),
         ("<mujoco></robot>", "not well-formed XML"),
         ("{\"mujoco\": 1}", "not well-formed XML"),
-        ("<!DOCTYPE a [<!ENTITY b 'c'>]><mujoco>&b;</mujoco>", "not well-formed XML"),
+        ("<!DOCTYPE a [<!ENTITY b 'c'>]><mujoco>&b;</mujoco>", "no body has a shape"),
+        (&bomb(), "not well-formed XML"),
         ("<sdf version='1.7'/>", "its root is <sdf>, but must be <mujoco> (MJCF) or <robot> (URDF)"),
         ("<mujoco/>", "no body has a shape"),
         ("<robot/>", "no link has a shape"),
@@ -133,7 +145,12 @@ fn what_is_neither_kind_is_refused() {
         assert!(message.contains(expected), "{text:?} gave {message:?}");
     }
     let path = Path::new("no such file.xml");
-    assert!(import(path, SKIN).unwrap_err().to_string().starts_with("no such file.xml: cannot be read"));
+    assert!(
+        import(path, &Options::default())
+            .unwrap_err()
+            .to_string()
+            .starts_with("no such file.xml: cannot be read")
+    );
 }
 
 #[test]
@@ -142,7 +159,7 @@ fn the_limits_are_those_of_the_format() {
         |geom: &str| format!("<mujoco><worldbody><body name='a'><geom {geom}/></body></worldbody></mujoco>");
     let refused = |geom: &str| imported(&body(geom), SKIN).unwrap_err();
     assert_eq!(
-        refused("size='0.0009' mass='1'"),
+        refused("type='cylinder' size='0.0009 1' mass='1'"),
         "part `a`: radius is 0.0009, but must be 0.001 to 1000 (m)"
     );
     assert_eq!(refused("size='-1' mass='1'"), "part `a`: radius is -1, but must be 0.001 to 1000 (m)");
