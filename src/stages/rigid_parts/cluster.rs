@@ -29,6 +29,8 @@ const MOMENTUM: [f64; 2] = [0.5, 0.98];
 const PACE: [f64; 2] = [1.1, 0.5];
 /// The least tolerance: what the iterations leave.
 pub(super) const LEAST_TOLERANCE: f64 = 3e-4;
+/// Leverage above which a sensor spans a component alone: all others together tell less than a tenth of it.
+const LEVERAGE: f64 = 0.9;
 /// How many times the tolerance the variance of a component is at least.
 const PRESENT: f64 = 20.0;
 
@@ -138,6 +140,14 @@ impl Cluster {
     /// c of the representatives, sensors × k, for which each component of w has a variance of 1.
     pub(super) fn whitened_loadings(&self) -> Mat<f64> {
         whitened(&self.loadings, &self.motion)
+    }
+
+    /// Representatives that span a component of the motion alone, if there are enough of them to tell. Such a component explains its
+    /// sensor whatever that feels.
+    pub(super) fn alone(&self) -> Vec<usize> {
+        let leverages = leverages(&self.loadings);
+        let is_alone = |at: &usize| leverages[*at] > LEVERAGE && leverages.len() > 2 * self.rank();
+        (0..leverages.len()).filter(is_alone).map(|at| self.representatives[at]).collect()
     }
 
     /// k, the rank of the motion subspace.
@@ -310,6 +320,15 @@ fn whitened(loadings: &Mat<f64>, motion: &Mat<f64>) -> Mat<f64> {
     product(loadings.as_ref(), Mat::from_fn(k, k, |i, j| factor[(i, j)]).as_ref())
 }
 
+/// Leverage of each sensor: the share of what it feels that its own c explains, c (Σ c cᵀ)⁻¹ cᵀ (Hoaglin and Welsch 1978).
+fn leverages(loadings: &Mat<f64>) -> Vec<f64> {
+    let squares = product(loadings.transpose(), loadings.as_ref());
+    let spread = solved(&squares, loadings);
+    let leverage =
+        |sensor| (0..loadings.ncols()).map(|at| loadings[(sensor, at)] * spread[(sensor, at)]).sum();
+    (0..loadings.nrows()).map(leverage).collect()
+}
+
 /// Variances along the principal axes of c wᵀ, from c for which each component of w has a variance of 1.
 fn components(whitened: &Mat<f64>) -> Vec<f64> {
     let squares = product(whitened.transpose(), whitened.as_ref());
@@ -346,6 +365,23 @@ mod tests {
         let (x, y) = ([1.0, 2.0, 0.0, 0.0, 0.0, 0.0], [2.0, -1.0, 0.0, 0.0, 1.0, 0.0]);
         let matrix = std::array::from_fn(|i| std::array::from_fn(|j| x[i] * x[j] + 3.0 * y[i] * y[j]));
         assert!((log_determinant_with_identity(matrix) - (6.0_f64 * 19.0).ln()).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_sensor_that_spans_a_component_alone_has_a_leverage_of_one() {
+        // Eight sensors of a plane, and one that alone feels a third direction.
+        let loadings = Mat::from_fn(9, 3, |sensor, at| {
+            let angle = sensor as f64;
+            match (sensor, at) {
+                (8, _) => [0.3, -0.2, 0.1][at],
+                (_, 2) => 0.0,
+                _ => [angle.cos(), angle.sin()][at],
+            }
+        });
+        let found = leverages(&loadings);
+        assert!((found[8] - 1.0).abs() < 1e-4, "{found:?}");
+        assert!(found[..8].iter().all(|leverage| *leverage < 0.5), "{found:?}");
+        assert!((found.iter().sum::<f64>() - 3.0).abs() < 1e-4, "they add up to the rank: {found:?}");
     }
 
     #[test]

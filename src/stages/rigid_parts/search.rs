@@ -2,7 +2,7 @@
 //! residual (K-subspaces, Bradley and Mangasarian 2000), from small clusters of sensors of high affinity.
 
 use std::cmp::Reverse;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use faer::Mat;
 use kodama::Method;
@@ -194,11 +194,23 @@ impl Search {
                 .enumerate()
                 .flat_map(|(at, cluster)| cluster.sensors.iter().map(move |&sensor| (sensor, at)))
                 .collect();
+            let alone: BTreeSet<usize> = clusters.iter().flat_map(Cluster::alone).collect();
             for &sensor in sensors {
-                let Some((best, least)) = smallest(residuals.iter().map(|of| of[sensor])) else { continue };
+                // What spans a component alone must be explained by another cluster to leave, and by none to stay.
+                let judged = |(at, of): (usize, &Vec<f64>)| {
+                    let is_own = own.get(&sensor) == Some(&at);
+                    if is_own && alone.contains(&sensor) { f64::MAX } else { of[sensor] }
+                };
+                let Some((best, least)) = smallest(residuals.iter().enumerate().map(judged)) else {
+                    continue;
+                };
                 let explains = least <= EXPLAINED * tolerance;
                 let to = match own.get(&sensor) {
-                    Some(&own) if residuals[own][sensor] <= tolerance || !explains => Some(own),
+                    Some(&own)
+                        if !explains || residuals[own][sensor] <= tolerance && !alone.contains(&sensor) =>
+                    {
+                        Some(own)
+                    }
                     _ if explains => Some(best),
                     _ => None,
                 };
