@@ -79,7 +79,7 @@ fn a_robot_of_meshes_is_felt_on_its_meshes() {
     let said = import(&folder, &data("robot/urdf/robot.urdf"), "--sensors-per-part 30");
     assert_eq!((said.status, &*said.err), (Some(0), ""), "{said:?}");
     for note in [
-        "link `tool`: mesh `package://robot/meshes/gone.stl` is not there; a box of its inertia",
+        "link `tool`: mesh `package://robot/meshes/gone.stl` is not there; a box with its inertia",
         "joints that do not turn are held at their rest place (1): slider (prismatic)",
         "the body is the tree of `base`; other trees are left out (--root keeps another) (1): target",
     ] {
@@ -131,6 +131,11 @@ fn a_mistake_is_one_line_and_leaves_no_file() {
         assert!(said.err.starts_with("bodyschema: "), "{name}: {}", said.err);
         assert!(!folder.at("body.toml").exists(), "{name}");
     }
+    let robot = data("robot/urdf/robot.urdf");
+    import(&folder, &robot, "--per-area 1e15")
+        .is_refused("link `base`: skin.per_area is 1000000000000000, but must be");
+    import(&folder, &robot, "--sensors-per-part 999999999999")
+        .is_refused("link `base`: it has 999999999999 sensors, but");
     import(&folder, &data("slide.urdf"), "--strict")
         .is_refused("slide.urdf: link `b`: its joint is `prismatic`");
     import(&folder, &data("arm.xml"), "--root arm")

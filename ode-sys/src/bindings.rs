@@ -404,7 +404,6 @@ unsafe extern "C" {
 unsafe extern "C" {
     pub fn dJointCreateUniversal(arg1: dWorldID, arg2: dJointGroupID) -> dJointID;
 }
-unsafe extern "C" {}
 unsafe extern "C" {
     pub fn dJointCreateAMotor(arg1: dWorldID, arg2: dJointGroupID) -> dJointID;
 }
@@ -444,7 +443,6 @@ unsafe extern "C" {
 unsafe extern "C" {
     pub fn dJointAddUniversalTorques(joint: dJointID, torque1: dReal, torque2: dReal);
 }
-unsafe extern "C" {}
 unsafe extern "C" {
     pub fn dJointSetAMotorNumAxes(arg1: dJointID, num: ::std::os::raw::c_int);
 }

@@ -28,9 +28,9 @@ enum Action {
 /// Reads the description of a robot, MJCF (MuJoCo) or URDF (ROS), or the skeleton of a recorded movement (.bvh), and writes it
 /// as a body.
 ///
-/// A part is a box, sphere, cylinder or capsule; the tree of parts is that of the bodies or links. Hinges, ball joints and
-/// fixed joints are imported, in the rest pose. Limits, friction and damping of joints, motors, contacts and inertias are
-/// ignored; masses become densities. See docs/reference.md.
+/// A part is a box, sphere, cylinder or capsule; the tree of parts is that of the bodies or links. A mesh becomes a box, with
+/// sensors on the mesh itself. Hinges, ball joints and fixed joints are imported, in the rest pose. Limits, friction and damping of
+/// joints, motors and contacts are ignored; masses become densities. See docs/reference.md.
 ///
 /// Of a skeleton, each bone becomes a capsule from its joint to the next one, with a radius of 0.15 of its length. `simulate
 /// --movement` moves the body as it was recorded. Which axis points up does not matter for touch.
@@ -83,6 +83,13 @@ impl Import {
             |a: &Path, b: &Path| matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b);
         ensure!(!same(robot, out), "{}: is the input file; give another --out", out.display());
         let Imported { file, notes } = if is_bvh(robot) {
+            let for_robots = self.root.as_ref().map(|_| "--root").or(self.strict.then_some("--strict"));
+            if let Some(option) = for_robots {
+                bail!(
+                    "{}: {option} is for robots, and this is a recorded movement; leave it out",
+                    robot.display()
+                );
+            }
             let bones = Bones { scale: self.scale, min_length: self.min_length.unwrap_or(Bones::MIN_LENGTH) };
             skeleton_body(robot, &read_bvh(robot)?, skin, &bones)?
         } else {

@@ -46,6 +46,32 @@ pub struct SkinEntry {
     pub per_area: Option<f64>,
 }
 
+impl SkinEntry {
+    /// How many sensors it has on an area, m².
+    ///
+    /// # Errors
+    /// If it says so in two ways, or has more than a body may have.
+    pub(crate) fn count(self, area: f64) -> Result<usize, Wrong> {
+        let count = match self {
+            Self { sensors: None, per_area: None } => 0,
+            Self { sensors: Some(count), per_area: None } => count,
+            Self { sensors: None, per_area: Some(density) } => {
+                if !(0.0..=1e9).contains(&density) {
+                    return Err(format!(
+                        "skin.per_area is {density}, but must be 0 to 1e9 (per square metre)"
+                    ));
+                }
+                (density * area).round() as usize
+            }
+            Self { .. } => return Err("skin has both sensors and per_area; give one".to_owned()),
+        };
+        if count > MAX_SENSORS {
+            return Err(format!("it has {count} sensors, but a body has at most {MAX_SENSORS}"));
+        }
+        Ok(count)
+    }
+}
+
 /// What shape a part has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -244,22 +270,7 @@ impl BodyFile {
             }
             return places.iter().map(|numbers| part::spot(part, numbers)).collect();
         }
-        let count = match entry.skin.or(self.skin).unwrap_or_default() {
-            SkinEntry { sensors: None, per_area: None } => 0,
-            SkinEntry { sensors: Some(count), per_area: None } => count,
-            SkinEntry { sensors: None, per_area: Some(density) } => {
-                if !(0.0..=1e9).contains(&density) {
-                    return Err(format!(
-                        "skin.per_area is {density}, but must be 0 to 1e9 (per square metre)"
-                    ));
-                }
-                (density * part.shape.area()).round() as usize
-            }
-            SkinEntry { .. } => return Err("skin has both sensors and per_area; give one".to_owned()),
-        };
-        if count > MAX_SENSORS {
-            return Err(format!("it has {count} sensors, but a body has at most {MAX_SENSORS}"));
-        }
+        let count = entry.skin.or(self.skin).unwrap_or_default().count(part.shape.area())?;
         Ok(part.shape.spread(count))
     }
 }

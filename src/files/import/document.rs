@@ -13,7 +13,7 @@ const ORIGIN: &str = "bodyschema-origin";
 pub(super) fn parsed(text: &str) -> Result<Document<'_>, Wrong> {
     let options = ParsingOptions { allow_dtd: true, ..ParsingOptions::default() };
     Document::parse_with_options(text, options)
-        .map_err(|error| format!("this is not well-formed XML, as MJCF and URDF must be: {error}"))
+        .map_err(|error| format!("this is not well-formed XML: {error}"))
 }
 
 /// From where text is: the file, and the line on which it begins.

@@ -32,7 +32,8 @@ pub(super) fn joined(
             for (number, solid) in link.solids.iter().enumerate() {
                 let name =
                     if number == 0 { link.name.clone() } else { format!("{}/{}", link.name, number + 1) };
-                let mut part = solid.part(name, options.skin);
+                let here = |message: Wrong| format!("{word} `{}`: {message}", link.name);
+                let mut part = solid.part(name, options.skin).map_err(here)?;
                 if number > 0 {
                     fix(&mut part, link, link);
                 } else if rigid.lead != Some(at) {
@@ -42,7 +43,6 @@ pub(super) fn joined(
                     let (carrier, turns) = tree.turns(index);
                     match carrier.and_then(holder) {
                         Some(parent) => {
-                            let here = |message| format!("{word} `{}`: {message}", link.name);
                             let (joints, more) = joints(&turns, options.strict).map_err(here)?;
                             notes.extend(more.into_iter().map(here));
                             let mass = rigid
@@ -52,7 +52,7 @@ pub(super) fn joined(
                                 .map(Solid::own_mass)
                                 .sum();
                             let parent = links[parent].name.clone();
-                            parts.extend(chain(parent, joints, mass, &mut part, options));
+                            parts.extend(chain(parent, joints, mass, &mut part, options)?);
                         }
                         None if turns
                             .iter()

@@ -46,7 +46,7 @@ pub(super) fn joints(turns: &[&Turn], strict: bool) -> Result<(Vec<Joint>, Vec<S
         groups.push((turns.to_vec(), place));
         if off > SAME_PLACE {
             notes.push(format!(
-                "its {} joints, up to {:.1} cm from each other's mean place, became one joint there",
+                "its {} joints, up to {:.1} cm from their mean place, became one joint there",
                 anchors.len(),
                 100.0 * off
             ));
@@ -79,7 +79,7 @@ pub(super) fn chain(
     mass: f64,
     part: &mut PartEntry,
     options: &Options,
-) -> Vec<PartEntry> {
+) -> Result<Vec<PartEntry>, Wrong> {
     let (mut between, mut parent) = (Vec::new(), parent);
     let places: Vec<Column<f64>> = joints.iter().map(|joint| joint.anchor).collect();
     for (at, joint) in joints.into_iter().enumerate() {
@@ -92,12 +92,12 @@ pub(super) fn chain(
         let ball = Solid::new(Shape::Sphere { radius: (way.norm() / 4.0).clamp(STAND_IN, NEAR) }, pose);
         let ball = Solid { mass: Some(BETWEEN * mass), is_bare: true, ..ball };
         let name = format!("{}/joint-{}", part.name, at + 1);
-        let mut ball = ball.part(name.clone(), options.skin);
+        let mut ball = ball.part(name.clone(), options.skin)?;
         joint.write(&mut ball, parent);
         between.push(ball);
         parent = name;
     }
-    between
+    Ok(between)
 }
 
 impl Joint {

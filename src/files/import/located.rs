@@ -45,8 +45,7 @@ impl Located {
         };
         if !path.starts_with(&self.top) {
             return Err(format!(
-                "is at `{name}`, outside {}; copy it beside the description",
-                self.top.display()
+                "is at `{name}`, more than {UP} folders above; copy it beside the description"
             ));
         }
         Ok(Some(path))
@@ -98,7 +97,10 @@ mod tests {
         assert_eq!(files.find("../meshes", "m.stl").unwrap(), files.find("", "../meshes/m.stl").unwrap());
         assert!(found("m.stl").is_none() && found("package://robot").is_none());
         let far = files.find("", "../../../../../far.stl").unwrap_err();
-        assert!(far.contains("far.stl`, outside ") && far.contains("copy it beside"), "{far}");
+        assert!(
+            far.contains("far.stl`, more than 4 folders above") && far.contains("copy it beside"),
+            "{far}"
+        );
         assert!(files.find("", "https://x/m.stl").unwrap_err().contains("https:// is not read"));
     }
 }

@@ -13,12 +13,21 @@ use nalgebra::{
 use super::document::Wrong;
 use crate::stages::agent::{Spot, Vector3};
 
+/// Thickness of the thinnest solid, m. A plate that is drawn without thickness gets it.
+pub(super) const THIN: f64 = 1e-3;
 /// Places among which those of the sensors are chosen, for each sensor.
 const CANDIDATES: usize = 8;
-/// Most places that are compared with all that were chosen; with more, all candidates are taken.
+/// Most comparisons of places with each other; with more, places that share the area evenly are taken as they are.
 const MOST_COMPARED: usize = 100_000_000;
 /// Step of a sequence that fills an interval evenly, and a triangle by two of them (Roberts 2018: the plastic number).
 const EVEN: [f64; 2] = [0.754_877_666_246_692_8, 0.569_840_290_998_053_3];
+
+/// Most triangles that are read.
+const MOST_TRIANGLES: usize = 10_000_000;
+
+fn too_many() -> Wrong {
+    format!("has more than {MOST_TRIANGLES} triangles; simplify it")
+}
 
 /// A surface of triangles, in m. The corners of each go round it counterclockwise as seen from outside.
 #[derive(Debug, Clone, PartialEq)]
@@ -118,10 +127,11 @@ impl Mesh {
     }
 
     /// Volume of the tetrahedra from the middle to each triangle, m³, each as positive: that of MuJoCo's `legacy` inertia, and of a
-    /// closed convex mesh the one that it encloses.
+    /// closed convex mesh the one that it encloses. A plate has its thickness at least.
     pub(super) fn volume(&self) -> f64 {
         let middle = self.middle();
-        self.triangles.iter().map(|corners| tetrahedron(corners, middle).abs()).sum()
+        let sum: f64 = self.triangles.iter().map(|corners| tetrahedron(corners, middle).abs()).sum();
+        sum.max(self.area() / 2.0 * THIN)
     }
 
     /// Area, m².
@@ -154,7 +164,8 @@ impl Mesh {
         }
         let [plain, turned] =
             [UnitQuaternion::identity(), principal(spread).0].map(|turn| self.bounds_along(turn));
-        let volume = |sides: &Vector3| sides.iter().product::<f64>();
+        // A plate has a thickness as a solid, too.
+        let volume = |sides: &Vector3| sides.iter().map(|side| side.max(THIN)).product::<f64>();
         // A little less is rounding, and a box along the axes is easier to read.
         if volume(&turned.0) < 0.99 * volume(&plain.0) { turned } else { plain }
     }
@@ -172,7 +183,10 @@ impl Mesh {
     /// after the other is taken that is farthest from all before it (Gonzalez 1985).
     pub(super) fn spread(&self, count: usize) -> Vec<Spot> {
         let many = CANDIDATES * count;
-        let candidates = self.even(if many.saturating_mul(count) <= MOST_COMPARED { many } else { count });
+        if many.saturating_mul(count) > MOST_COMPARED {
+            return self.even(count);
+        }
+        let candidates = self.even(many);
         let places: Vec<Column<f64>> = candidates.iter().map(|spot| Column::from(spot.position)).collect();
         let mut nearest = vec![f64::INFINITY; places.len()];
         let (mut chosen, mut next) = (Vec::with_capacity(count), 0);

@@ -16,7 +16,7 @@ use super::document::Wrong;
 use super::located::Located;
 use super::mesh::Mesh;
 use super::notes::names;
-use super::placed::{Link, Read, Solid, Turn, weigh, z_to};
+use super::placed::{Link, Read, Solid, Turn, settled, z_to};
 use super::xml::Element;
 use crate::files::body::DENSITY;
 use crate::stages::agent::Shape;
@@ -126,8 +126,7 @@ fn ties<'a>(root: Node<'a, 'a>, defaults: &Defaults<'a>, strict: bool) -> Result
         tied.push(format!("{first} with {second}"));
     }
     let names = names(tied.iter().map(String::as_str));
-    Ok(names
-        .map(|names| format!("bodies are tied together in addition to the tree, which is left out {names}")))
+    Ok(names.map(|names| format!("ties between bodies beside the tree are left out {names}")))
 }
 
 impl<'a> Bodies<'a> {
@@ -204,19 +203,8 @@ impl<'a> Bodies<'a> {
         let geoms = std::mem::take(&mut self.geoms);
         let inertials = std::mem::take(&mut self.inertials);
         for (body, (geoms, inertial)) in geoms.into_iter().zip(inertials).enumerate() {
-            let (mut solids, mass) = self.solids(body, &geoms, inertial.as_ref())?;
-            weigh(&mut solids, mass);
-            let all = solids.len();
-            solids.retain(|solid| !solid.is_dummy());
-            if solids.len() < all {
-                let name = &self.links[body].name;
-                let left = all - solids.len();
-                self.notes.push(format!(
-                    "body `{name}`: {left} of {all} shapes are too small or too light and left out"
-                ));
-                weigh(&mut solids, mass);
-            }
-            self.links[body].bare_mass = if solids.is_empty() { mass } else { 0.0 };
+            let (solids, bare_mass) = self.solids(body, &geoms, inertial.as_ref())?;
+            self.links[body].bare_mass = bare_mass;
             self.links[body].solids = solids;
         }
         if let Some(total) = self.defaults.total_mass {
@@ -231,7 +219,7 @@ impl<'a> Bodies<'a> {
         Ok(Read { links: self.links, notes: self.notes })
     }
 
-    /// What a body consists of, and its mass, kg; 0 if nothing says it.
+    /// What a body consists of, and its mass, kg, if it has no shape.
     fn solids(
         &mut self,
         body: usize,
@@ -243,6 +231,10 @@ impl<'a> Bodies<'a> {
         let all = !touches.contains(&true);
         let (mut solids, mut mass, mut missing) = (Vec::new(), 0.0, None);
         for ((geom, frame), touches) in geoms.iter().zip(touches) {
+            // Of a picture nothing counts then.
+            if inertial.is_some() && !all && !touches {
+                continue;
+            }
             let mut solid = match self.solid(geom, frame)? {
                 Found::Solid(solid) => solid,
                 Found::Absent(file) => {
@@ -261,26 +253,16 @@ impl<'a> Bodies<'a> {
             }
         }
         let mass = inertial.map_or(mass, |inertial| inertial.mass);
-        if solids.is_empty() && missing.is_some() {
-            solids.extend(inertial.and_then(|own| Solid::of_inertia(own.mass, own.tensor, own.pose)));
-        }
-        if let Some(mesh) = missing {
-            let name = &self.links[body].name;
-            let what = if solids.is_empty() {
-                "it has no shape"
-            } else {
-                "a box of its inertia, or its other shapes, stand for it"
-            };
-            self.notes.push(format!("body `{name}`: mesh `{mesh}` is not there; {what}"));
-        }
-        Ok((solids, mass))
+        let inertia_box = inertial.and_then(|own| Solid::of_inertia(own.mass, own.tensor, own.pose));
+        let label = ["body", &self.links[body].name];
+        Ok(settled(label, solids, mass, missing.as_deref(), inertia_box, &mut self.notes))
     }
 }
 
 /// What a geom is.
 enum Found {
     Solid(Solid),
-    /// A mesh whose file is not there.
+    /// A mesh that cannot be had, and why.
     Absent(String),
     /// A plane or a height field, which is no part of a robot.
     Endless,
@@ -381,6 +363,9 @@ impl<'a> Bodies<'a> {
     fn weighed(&self, geom: &Element, solid: Solid) -> Result<Solid, Wrong> {
         let mass = match (geom.number("mass")?, geom.number("density")?) {
             (Some(mass), _) => Some(mass),
+            (None, density) if geom.text("shellinertia") == Some("true") => {
+                Some(density.unwrap_or(DENSITY) * solid.area())
+            }
             (None, Some(density)) => Some(density * solid.own_mass() / DENSITY),
             (None, None) => solid.mass,
         };

@@ -8,3 +8,8 @@ pub(crate) fn names<'a>(names: impl Iterator<Item = &'a str>) -> Option<String> 
     let first = names[..names.len().min(MOST)].join(", ");
     (!names.is_empty()).then(|| format!("({}): {first}{more}", names.len()))
 }
+
+/// Says that a mesh is not there.
+pub(super) fn absent(file: &str) -> String {
+    format!("mesh `{file}` is not there")
+}

@@ -5,12 +5,11 @@ use std::rc::Rc;
 
 use nalgebra::{Isometry3, Matrix3, Point3, UnitQuaternion, UnitVector3, Vector3 as Column};
 
-use super::mesh::{Mesh, principal};
+use super::document::Wrong;
+use super::mesh::{Mesh, THIN, principal};
 use crate::files::body::{DENSITY, PartEntry, ShapeName, SkinEntry};
 use crate::stages::agent::{Shape, Spot, Vector3};
 
-/// Thickness of the thinnest solid, m. A plate that is drawn without thickness gets it.
-const THIN: f64 = 1e-3;
 /// Volume of the smallest solid, m³: a cube of 2 mm. What is smaller marks a place.
 const TINY: f64 = 8e-9;
 
@@ -114,6 +113,40 @@ pub(super) fn weigh(solids: &mut [Solid], mass: f64) {
     }
 }
 
+/// What a link of this name consists of: these shapes, or the box of its inertia if meshes are missing and nothing is left; all with
+/// the mass, kg, of the link, and without what only marks a place. Also the mass if it has no shape, 0 otherwise. Messages call a
+/// link `word`.
+pub(super) fn settled(
+    [word, name]: [&str; 2],
+    mut solids: Vec<Solid>,
+    mass: f64,
+    missing: Option<&str>,
+    inertia_box: Option<Solid>,
+    notes: &mut Vec<String>,
+) -> (Vec<Solid>, f64) {
+    if let Some(missing) = missing {
+        let (others, stand_in) = (!solids.is_empty(), inertia_box.filter(|_| solids.is_empty()));
+        let what = match (others, &stand_in) {
+            (true, _) => "its other shapes stand for it",
+            (_, Some(_)) => "a box with its inertia stands for it",
+            _ => "it has no shape",
+        };
+        notes.push(format!("{word} `{name}`: {missing}; {what}"));
+        solids.extend(stand_in);
+    }
+    weigh(&mut solids, mass);
+    let all = solids.len();
+    solids.retain(|solid| !solid.is_dummy());
+    if solids.len() < all {
+        let left = all - solids.len();
+        notes
+            .push(format!("{word} `{name}`: {left} of {all} shapes are too small or too light and left out"));
+        weigh(&mut solids, mass);
+    }
+    let bare_mass = if solids.is_empty() { mass } else { 0.0 };
+    (solids, bare_mass)
+}
+
 /// The least rotation that takes z to a direction; about x if it is the opposite one.
 pub(super) fn z_to(direction: &UnitVector3<f64>) -> UnitQuaternion<f64> {
     let axis = Column::z().cross(direction);
@@ -164,6 +197,16 @@ impl Solid {
             .then(|| Self { mass: Some(mass), ..Self::new(Shape::Box { sides }, pose) })
     }
 
+    /// Volume of its shape, m³; of a mesh that of the box.
+    pub(super) fn bulk(&self) -> f64 {
+        volume(&self.shape)
+    }
+
+    /// Area of what it stands for, m².
+    pub(super) fn area(&self) -> f64 {
+        self.mesh.as_ref().map_or_else(|| self.shape.area(), |(mesh, _)| mesh.area())
+    }
+
     /// Volume of what it stands for, m³.
     pub(super) fn volume(&self) -> f64 {
         self.mesh.as_ref().map_or_else(|| volume(&self.shape), |(mesh, _)| mesh.volume())
@@ -189,20 +232,22 @@ impl Solid {
 
     /// Its sensors on the mesh that it stands for: place and direction of each in the common frame. None of a shape that is no mesh:
     /// sensors are then spread over the shape.
-    fn places(&self, skin: SkinEntry) -> Option<Vec<[f64; 6]>> {
-        let (mesh, pose) = self.mesh.as_ref()?;
-        let on_area = |density: f64| (density * mesh.area()).round() as usize;
-        let count = skin.sensors.or(skin.per_area.map(on_area)).unwrap_or_default();
+    fn places(&self, skin: SkinEntry) -> Result<Option<Vec<[f64; 6]>>, Wrong> {
+        let Some((mesh, pose)) = &self.mesh else { return Ok(None) };
+        let count = skin.count(mesh.area())?;
         let placed = |spot: Spot| {
             let [x, y, z] = rounded((pose * Point3::from(spot.position)).coords);
             let [a, b, c] = rounded(pose.rotation * Column::from(spot.normal));
             [x, y, z, a, b, c]
         };
-        Some(mesh.spread(count).into_iter().map(placed).collect())
+        Ok(Some(mesh.spread(count).into_iter().map(placed).collect()))
     }
 
     /// The solid as a part that is not joined yet, with this skin if it is a mesh.
-    pub(super) fn part(&self, name: String, skin: SkinEntry) -> PartEntry {
+    ///
+    /// # Errors
+    /// If the skin has more sensors than a body may have.
+    pub(super) fn part(&self, name: String, skin: SkinEntry) -> Result<PartEntry, Wrong> {
         let at = |height: f64| Some(rounded((self.pose * Point3::new(0.0, 0.0, height)).coords));
         let mut part = PartEntry {
             name,
@@ -219,7 +264,7 @@ impl Solid {
             anchor: None,
             axes: None,
             skin: self.is_bare.then_some(SkinEntry { sensors: Some(0), per_area: None }),
-            places: self.places(skin),
+            places: self.places(skin)?,
         };
         match self.shape {
             Shape::Cylinder { radius, length } | Shape::Capsule { radius, length } => {
@@ -241,6 +286,6 @@ impl Solid {
                 part.quaternion = is_turned.then_some(quaternion);
             }
         }
-        part
+        Ok(part)
     }
 }

@@ -1,5 +1,7 @@
 //! Change links to what a body can have: nothing slides, there is one tree, and what others rotate on has a shape and its mass.
 
+use std::f64::consts::PI;
+
 use nalgebra::{Isometry3, Translation3};
 
 use super::document::Wrong;
@@ -8,6 +10,7 @@ use super::notes::names;
 use super::options::Options;
 use super::placed::{Link, Solid, Turn, weigh};
 use super::tree::Tree;
+use crate::files::body::DENSITY;
 use crate::stages::agent::Shape;
 
 /// Density, kg/m³, above which a mass is not that of its shape: four times that of osmium, the densest metal.
@@ -21,7 +24,7 @@ pub(super) fn prepared(
     let (mut links, mut notes) = held(word, links, options.strict)?;
     links = one_tree(word, links, options, &mut notes)?;
     stand_ins(word, &mut links, options.strict, &mut notes)?;
-    weigh_bare(&mut links);
+    weigh_bare(word, &mut links, options.strict, &mut notes)?;
     Ok((links, notes))
 }
 
@@ -42,7 +45,7 @@ fn held(word: &str, mut links: Vec<Link>, strict: bool) -> Result<(Vec<Link>, Ve
             link.parent = None;
             continue;
         }
-        if strict {
+        if strict && on {
             let name = &link.name;
             return Err(format!(
                 "{word} `{name}`: its joint is `{kind}`, which is not supported; make it a hinge, or fix it"
@@ -131,16 +134,23 @@ fn stand_ins(word: &str, links: &mut [Link], strict: bool, notes: &mut Vec<Strin
             "what has no shape, but carries several that rotate on it, became a ball without skin {names}"
         ));
     }
-    for at in forks {
+    let mass = |at: usize| {
+        let members = || (0..links.len()).filter(|other| tree.rigid_of[*other] == tree.rigid_of[at]);
+        members().map(|other| links[other].bare_mass).sum::<f64>()
+    };
+    let forks: Vec<(usize, f64)> = forks.iter().map(|&at| (at, mass(at))).collect();
+    for (at, mass) in forks {
         let pose = Isometry3::from_parts(Translation3::from(links[at].origin), Default::default());
-        let ball = Solid::new(Shape::Sphere { radius: STAND_IN }, pose);
+        // As large as its mass is as water.
+        let radius = (mass / DENSITY * 0.75 / PI).cbrt().max(STAND_IN);
+        let ball = Solid::new(Shape::Sphere { radius }, pose);
         links[at].solids.push(Solid { is_bare: true, ..ball });
     }
     Ok(())
 }
 
 /// Gives the mass of what has no shape to the rigid body that it is part of, or else to the one that carries it.
-fn weigh_bare(links: &mut [Link]) {
+fn weigh_bare(word: &str, links: &mut [Link], strict: bool, notes: &mut Vec<String>) -> Result<(), Wrong> {
     let tree = Tree::new(links);
     let first_shaped = tree.rigids.iter().position(|rigid| rigid.lead.is_some());
     let mut added = vec![0.0; tree.rigids.len()];
@@ -163,13 +173,19 @@ fn weigh_bare(links: &mut [Link]) {
         // A heavy link may have but a small shape, which marks a place.
         let too_dense = solids().any(|solid| solid.density().is_some_and(|density| density > DENSEST));
         if too_dense {
+            let name = &links[members[0]].name;
+            if strict {
+                return Err(format!(
+                    "{word} `{name}` has too small a shape for its mass; give it a larger one"
+                ));
+            }
+            notes.push(format!(
+                "{word} `{name}`: a mass too large for its shape is spread over all that is fixed to it"
+            ));
             let all = solids().map(Solid::own_mass).sum::<f64>() + added;
-            let volume: f64 = solids().map(Solid::volume).sum();
+            let bulk: f64 = solids().map(Solid::bulk).sum();
             for &at in &members {
-                links[at]
-                    .solids
-                    .iter_mut()
-                    .for_each(|solid| solid.mass = Some(all * solid.volume() / volume));
+                links[at].solids.iter_mut().for_each(|solid| solid.mass = Some(all * solid.bulk() / bulk));
             }
             continue;
         }
@@ -192,4 +208,5 @@ fn weigh_bare(links: &mut [Link]) {
             weigh(&mut links[at].solids, all * share);
         }
     }
+    Ok(())
 }

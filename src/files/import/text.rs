@@ -61,22 +61,28 @@ fn included(path: PathBuf, files: &Located, around: &[PathBuf]) -> Result<String
     }
     let around = around.iter().cloned().chain([path.clone()]).collect();
     let inner = Source { files, path, around }.inside(root, &text)?;
-    let (open, close) = (inside(root).start, inside(root).end);
-    Ok(format!("{}{inner}{}", &text[..open], &text[close..]))
+    let Range { start, end } = inside(root)?;
+    Ok(format!("{}{inner}{}", &text[..start], &text[end..]))
 }
 
 /// Where the content of an element is in the text.
-fn inside(node: Node) -> Range<usize> {
-    let end = node.range().end;
-    node.first_child()
-        .zip(node.last_child())
-        .map_or(end..end, |(first, last)| first.range().start..last.range().end)
+fn inside(node: Node) -> Result<Range<usize>, Wrong> {
+    let Range { start, end } = node.range();
+    let range = node.first_child().zip(node.last_child());
+    let range = range.map_or(end..end, |(first, last)| first.range().start..last.range().end);
+    // What stands for an entity is where the entity is declared.
+    if start <= range.start && range.start <= range.end && range.end <= end {
+        Ok(range)
+    } else {
+        Err(Element::new(node.tag_name().name(), node)
+            .wrong("contains entities that stand for elements; write them out"))
+    }
 }
 
 impl Source<'_> {
     /// The content of an element of the file, written out.
     fn inside(&self, node: Node, text: &str) -> Result<String, Wrong> {
-        let range = inside(node);
+        let range = inside(node)?;
         let (mut whole, mut from) = (String::new(), range.start);
         let stands_for_more = |node: &Node| ["include", "replicate"].contains(&node.tag_name().name());
         for node in node.descendants().skip(1).filter(stands_for_more) {
@@ -116,7 +122,7 @@ impl Source<'_> {
         let text =
             included(path.clone(), self.files, &self.around).map_err(|wrong| format!("{name}: {wrong}"))?;
         let document = parsed(&text).map_err(|wrong| format!("{name}: {wrong}"))?;
-        let content = inside(document.root_element());
+        let content = inside(document.root_element())?;
         let line = document.text_pos_at(content.start).row;
         Ok(format!("{}{}", origin(&path, line), &text[content]))
     }
@@ -129,23 +135,23 @@ impl Source<'_> {
             return Err(element.wrong(format!("has count {count}, which must be 1 to {MOST_COPIES}")));
         }
         let count = count as usize;
-        let line = node.document().text_pos_at(inside(node).start).row;
+        let line = node.document().text_pos_at(inside(node)?.start).row;
         let content =
             format!("<replicate>{}{}</replicate>", origin(&self.path, line), self.inside(node, text)?);
         let document = parsed(&content)?;
         let content = &content[..];
         let attribute = |key: &str, name: &str| {
-            node.attribute(key).map_or_else(String::new, |value| format!(" {name}=\"{value}\""))
+            node.attribute(key).map_or_else(String::new, |value| format!(" {name}=\"{}\"", escaped(value)))
         };
         let frame = format!("<frame{}{}>", attribute("offset", "pos"), attribute("euler", "euler"));
-        let digits = (count - 1).to_string().len();
+        let digits = count.to_string().len();
         let mut whole = String::new();
         for copy in 0..count {
-            let suffix = format!("{}{copy:0digits$}", node.attribute("sep").unwrap_or_default());
+            let suffix = format!("{}{copy:0digits$}", escaped(node.attribute("sep").unwrap_or_default()));
             if copy > 0 {
                 whole.push_str(&frame);
             }
-            whole.push_str(&renamed(&document, content, &suffix));
+            whole.push_str(&renamed(&document, content, &suffix)?);
             if whole.len() > MOST_BYTES {
                 return Err(element.wrong(format!("stands for more than {MOST_BYTES} bytes")));
             }
@@ -155,20 +161,28 @@ impl Source<'_> {
     }
 }
 
+/// The value of an attribute as it is written.
+fn escaped(value: &str) -> String {
+    value.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;").replace('\'', "&apos;")
+}
+
 /// What is in the root of a document, with a suffix on all names.
-fn renamed(document: &Document, text: &str, suffix: &str) -> String {
-    let range = inside(document.root_element());
+fn renamed(document: &Document, text: &str, suffix: &str) -> Result<String, Wrong> {
+    let range = inside(document.root_element())?;
     let (mut whole, mut from) = (String::new(), range.start);
     for node in document.descendants().filter(Node::is_element) {
         if let Some(name) = node.attribute_node("name") {
             let end = name.range_value().end;
+            if end < from || end > range.end {
+                continue;
+            }
             whole.push_str(&text[from..end]);
             whole.push_str(suffix);
             from = end;
         }
     }
     whole.push_str(&text[from..range.end]);
-    whole
+    Ok(whole)
 }
 
 #[cfg(test)]

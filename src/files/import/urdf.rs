@@ -9,8 +9,8 @@ use roxmltree::Node;
 use super::document::Wrong;
 use super::located::Located;
 use super::mesh;
-use super::notes::names;
-use super::placed::{Link, Read, Solid, Turn, weigh};
+use super::notes::{absent, names};
+use super::placed::{Link, Read, Solid, Turn, settled};
 use super::xml::Element;
 use crate::stages::agent::Shape;
 
@@ -172,7 +172,6 @@ impl<'a> Reader<'a, '_> {
     /// What the link consists of: what it collides with, or else what it looks like, or else a box of its inertia; and the mass of
     /// a link without any, kg.
     fn solids(&self, notes: &mut Vec<String>) -> Result<(Vec<Solid>, f64), Wrong> {
-        let name = self.name;
         let inertial = child(self.node, "inertial");
         let mass = match inertial.and_then(|inertial| child(inertial, "mass")) {
             Some(mass) => self.element().part(mass).needed_number("value")?,
@@ -191,29 +190,9 @@ impl<'a> Reader<'a, '_> {
                 break;
             }
         }
-        if solids.is_empty() && missing.is_some() {
-            solids.extend(self.inertia_box(inertial, mass)?);
-        }
-        if let Some(mesh) = missing {
-            let what = if solids.is_empty() {
-                "it has no shape"
-            } else {
-                "a box of its inertia, or its other shapes, stand for it"
-            };
-            notes.push(format!("link `{name}`: mesh `{mesh}` is not there; {what}"));
-        }
-        weigh(&mut solids, mass);
-        let all = solids.len();
-        solids.retain(|solid| !solid.is_dummy());
-        if solids.len() < all {
-            notes.push(format!(
-                "link `{name}`: {} of {all} shapes are too small or too light and left out",
-                all - solids.len()
-            ));
-            weigh(&mut solids, mass);
-        }
-        let bare_mass = if solids.is_empty() { mass } else { 0.0 };
-        Ok((solids, bare_mass))
+        let missing = missing.as_deref().map(absent);
+        let inertia_box = self.inertia_box(inertial, mass)?;
+        Ok(settled(["link", self.name], solids, mass, missing.as_deref(), inertia_box, notes))
     }
 
     /// The shapes that the link has as `tag`, and the first mesh that is not there.

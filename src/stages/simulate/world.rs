@@ -1,4 +1,4 @@
-//! Simulate the agent in Open Dynamics Engine (section 5.1). This and its joints are the only files with `unsafe` code.
+//! Simulate the agent in Open Dynamics Engine (section 5.1). This, its joints and its rigid bodies are the only files with `unsafe` code.
 //!
 //! ODE's assertions end the process, so everything handed to it is checked before, and the state of every
 //! body after each step. Each world has its own step threading, because two worlds that share ODE's

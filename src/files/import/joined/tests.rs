@@ -102,10 +102,7 @@ fn joints_that_a_body_has_not_are_changed_with_a_note_or_refused() {
     // Up to 5 cm from the mean place they are one joint there.
     let (part, notes) = turned(&[hinge(X), near(0.08)]).unwrap();
     assert_eq!((part.joint, part.anchor), (Some(JointName::Universal), Some([1.0, 2.0, 3.04])));
-    assert_eq!(
-        notes,
-        ["link `b`: its 2 joints, up to 4.0 cm from each other's mean place, became one joint there"]
-    );
+    assert_eq!(notes, ["link `b`: its 2 joints, up to 4.0 cm from their mean place, became one joint there"]);
     let message = strictly("link", &pair(&[hinge(X), near(0.08)]));
     assert!(message.starts_with("link `b`: it rotates about 2 points of its parent; give"), "{message}");
 

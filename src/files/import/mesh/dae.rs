@@ -2,20 +2,24 @@
 //!
 //! Which axis points up is ignored, as viewers of ROS do. `lookat` and `skew` are refused, since no robot has them.
 
+use std::cell::Cell;
 use std::collections::HashMap;
 
 use nalgebra::{Matrix4, Point3, Rotation3, Unit, Vector3 as Column};
 use roxmltree::Node;
 
+use super::{MOST_TRIANGLES, too_many};
 use crate::files::import::document::Wrong;
 use crate::files::import::document::parsed;
 
-/// Most triangles, and most nodes within nodes, that are read.
-const MOST_TRIANGLES: usize = 10_000_000;
+/// Most nodes within nodes, and most nodes and numbers altogether, however often they are instantiated.
 const MOST_DEPTH: usize = 64;
+const MOST_READ: usize = 100_000_000;
+/// Largest offset of an index among those of a corner.
+const MOST_OFFSET: usize = 1000;
 
-/// The elements of a file by their identifiers.
-struct Elements<'a>(HashMap<&'a str, Node<'a, 'a>>);
+/// The elements of a file by their identifiers, and how much of it has been read.
+struct Elements<'a>(HashMap<&'a str, Node<'a, 'a>>, Cell<usize>);
 
 /// Reads the triangles.
 ///
@@ -28,7 +32,7 @@ pub(super) fn triangles(text: &str) -> Result<Vec<[Column<f64>; 3]>, Wrong> {
         return Err(format!("is no COLLADA: its root is <{}>", root.tag_name().name()));
     }
     let elements = root.descendants().filter_map(|node| Some((node.attribute("id")?, node)));
-    let elements = Elements(elements.collect());
+    let elements = Elements(elements.collect(), Cell::new(0));
     let unit = below(root, "asset").and_then(|asset| below(asset, "unit"));
     let metre = match unit.and_then(|unit| unit.attribute("meter")) {
         Some(text) => {
@@ -74,6 +78,16 @@ fn exactly<const N: usize>(node: Node) -> Result<[f64; N], Wrong> {
 }
 
 impl<'a> Elements<'a> {
+    /// Counts what is read.
+    fn count(&self, more: usize) -> Result<(), Wrong> {
+        self.1.set(self.1.get() + more);
+        if self.1.get() > MOST_READ {
+            Err("shows more than can be read; simplify it".to_owned())
+        } else {
+            Ok(())
+        }
+    }
+
     /// What an element refers to, by `url` or `source`.
     fn find(&self, node: Node) -> Result<Node<'a, 'a>, Wrong> {
         let name = node.attribute("url").or(node.attribute("source")).unwrap_or_default();
@@ -92,6 +106,7 @@ impl<'a> Elements<'a> {
         if depth > MOST_DEPTH {
             return Err(format!("has more than {MOST_DEPTH} nodes within each other"));
         }
+        self.count(1)?;
         let mut pose = around;
         for child in node.children().filter(Node::is_element) {
             match child.tag_name().name() {
@@ -133,13 +148,16 @@ impl<'a> Elements<'a> {
             }
             let inputs = || primitive.children().filter(|node| named(node, "input"));
             let offset = |node: &Node| {
-                node.attribute("offset").and_then(|text| text.parse::<usize>().ok()).unwrap_or(0)
+                let offset =
+                    node.attribute("offset").and_then(|text| text.parse::<usize>().ok()).unwrap_or(0);
+                offset.min(MOST_OFFSET)
             };
             let Some(vertex) = inputs().find(|node| node.attribute("semantic") == Some("VERTEX")) else {
                 continue;
             };
             let (own, stride) = (offset(&vertex), 1 + inputs().map(|node| offset(&node)).max().unwrap_or(0));
             let places = self.places(vertex)?;
+            self.count(places.len())?;
             let corner = |at: usize| {
                 let place: &Column<f64> = places.get(at).ok_or("has a triangle without a corner")?;
                 Ok::<_, Wrong>(pose.transform_point(&Point3::from(*place)).coords)
@@ -150,6 +168,7 @@ impl<'a> Elements<'a> {
             };
             for list in primitive.children().filter(|node| named(node, "p")) {
                 let all: Vec<usize> = numbers(list)?;
+                self.count(all.len())?;
                 let corners: Vec<usize> =
                     all.chunks_exact(stride).filter_map(|index| index.get(own).copied()).collect();
                 let mut rest = &corners[..];
@@ -172,7 +191,7 @@ impl<'a> Elements<'a> {
                         triangles.push([corner(face[a])?, corner(face[b])?, corner(face[at])?]);
                     }
                     if triangles.len() > MOST_TRIANGLES {
-                        return Err(format!("has more than {MOST_TRIANGLES} triangles; simplify it"));
+                        return Err(too_many());
                     }
                 }
             }

@@ -1,11 +1,11 @@
-//! Read files of meshes: STL and OBJ, COLLADA (.dae), and MuJoCo's MSH.
+//! Read files of meshes: STL, OBJ, COLLADA (.dae), and MuJoCo's MSH.
 
 use std::path::Path;
 
 use mesh_loader::{Loader, Scene};
 use nalgebra::Vector3 as Column;
 
-use super::{Mesh, dae};
+use super::{MOST_TRIANGLES, Mesh, dae, too_many};
 use crate::files::import::document::Wrong;
 
 /// Most bytes of a file.
@@ -24,15 +24,11 @@ pub(super) fn read(path: &Path) -> Result<Mesh, Wrong> {
     }
     let bytes = std::fs::read(path).map_err(|error| wrong(format!("cannot be read: {error}")))?;
     let kind = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
-    // Materials, which an OBJ may name, are of no interest.
-    let loader = Loader::default().custom_reader(|_| Ok(Vec::new()));
+    let text = || String::from_utf8_lossy(&bytes);
     let scene = match &*kind {
-        "stl" => loader.load_stl_from_slice(&bytes, name),
-        "obj" => loader.load_obj_from_slice(&bytes, name),
-        "dae" => {
-            let text = String::from_utf8_lossy(&bytes);
-            return dae::triangles(&text).and_then(Mesh::new).map_err(wrong);
-        }
+        "stl" => Loader::default().load_stl_from_slice(&bytes, name),
+        "obj" => return obj(&text()).and_then(Mesh::new).map_err(wrong),
+        "dae" => return dae::triangles(&text()).and_then(Mesh::new).map_err(wrong),
         "msh" => return msh(&bytes).map_err(wrong),
         _ => return Err(wrong("is none of .stl, .obj, .dae and .msh; convert it to one of them".to_owned())),
     };
@@ -49,6 +45,41 @@ fn triangles(scene: &Scene) -> Result<Vec<[Column<f64>; 3]>, Wrong> {
             };
             let [a, b, c] = *face;
             triangles.push([corner(a)?, corner(b)?, corner(c)?]);
+        }
+    }
+    Ok(triangles)
+}
+
+/// Vertices and faces of an OBJ; all else that it has is of no interest. A face of more than three corners is cut into a fan.
+fn obj(text: &str) -> Result<Vec<[Column<f64>; 3]>, Wrong> {
+    let (mut places, mut triangles) = (Vec::new(), Vec::new());
+    for (line, words) in text.lines().enumerate() {
+        let wrong = |what: &str| format!("line {}: {what}", line + 1);
+        let mut words = words.split_ascii_whitespace();
+        match words.next() {
+            Some("v") => {
+                let numbers: Option<Vec<f64>> = words.take(3).map(|word| word.parse().ok()).collect();
+                let [x, y, z] = numbers.unwrap_or_default()[..] else {
+                    return Err(wrong("a vertex (v) needs three numbers"));
+                };
+                places.push(Column::new(x, y, z));
+            }
+            Some("f") => {
+                // The index of a vertex comes first, from 1 on, or from -1 backwards.
+                let corner = |word: &str| {
+                    let index: i64 = word.split('/').next()?.parse().ok()?;
+                    let at = if index < 0 { places.len() as i64 + index } else { index - 1 };
+                    places.get(usize::try_from(at).ok()?).copied()
+                };
+                let corners: Option<Vec<Column<f64>>> = words.map(corner).collect();
+                let corners =
+                    corners.ok_or_else(|| wrong("a face (f) has a corner that is no vertex before it"))?;
+                triangles.extend((2..corners.len()).map(|at| [corners[0], corners[at - 1], corners[at]]));
+                if triangles.len() > MOST_TRIANGLES {
+                    return Err(too_many());
+                }
+            }
+            _ => {}
         }
     }
     Ok(triangles)

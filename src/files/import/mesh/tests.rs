@@ -168,3 +168,49 @@ fn damaged_files_give_a_mesh_or_a_line() {
     assert!(read(&folder.path().join("a.ply")).unwrap_err().contains("is none of .stl, .obj, .dae and .msh"));
     assert!(read(&folder.path().join("b.stl")).unwrap_err().contains("cannot be read"));
 }
+
+#[test]
+fn what_would_not_end_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = written(folder.path()).into_iter().find(|path| path.ends_with("t.dae")).unwrap();
+    let text = std::fs::read_to_string(path).unwrap();
+    let read_as = |from: &str, to: &str| {
+        assert!(text.contains(from));
+        std::fs::write(folder.path().join("m.dae"), text.replace(from, to)).unwrap();
+        read(&folder.path().join("m.dae"))
+    };
+    assert!(read_as("offset=\"0\"", "offset=\"18446744073709551615\"").unwrap_err().contains("no triangle"));
+    let twice = "<instance_node url=\"#n\"/><instance_node url=\"#n\"/>";
+    let wrong = read_as("<instance_geometry url=\"#g\"/>", twice).unwrap_err();
+    assert!(wrong.contains("nodes within each other"), "{wrong}");
+    assert!(read_as("</node>", &format!("{}</node>", "<instance_geometry url=\"#g\"/>".repeat(9))).is_ok());
+}
+
+#[test]
+fn a_plate_has_a_thickness() {
+    let [a, b, c, d] = [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]].map(|[x, y]| Column::new(x, y, 0.0));
+    let plate = Mesh::new(vec![[a, b, c], [a, c, d]]).unwrap();
+    assert!((plate.volume() - 0.001).abs() < 1e-12);
+    let turn = UnitQuaternion::from_euler_angles(0.0, 0.0, 0.6);
+    let mut sides = plate.moved(|corner| turn * corner).bounds().0;
+    sides.sort_by(f64::total_cmp);
+    assert!(sides.iter().zip([0.0, 1.0, 2.0]).all(|(a, b)| (a - b).abs() < 1e-9), "{sides:?}");
+}
+
+#[test]
+fn an_obj_is_read_by_its_vertices_and_faces_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    let read_as = |text: &str| {
+        std::fs::write(folder.path().join("m.obj"), text).unwrap();
+        read(&folder.path().join("m.obj"))
+    };
+    let corners = "v 0 0 0\nv 1 0 0 1.0\nv 1 1 0\nv 0 1 0\nvn 0 0 1\n";
+    for face in ["f 1 2 3 4", "f 1//1 2 3/7 4/7/1", "f -4 -3 -2 -1"] {
+        let mesh = read_as(&format!("{corners}o x\ng y\nusemtl z\n{face}\n")).unwrap();
+        assert!((mesh.area() - 1.0).abs() < 1e-9 && mesh.triangles.len() == 2, "{face}");
+    }
+    for face in ["f 1 2 5", "f 0 1 2", "f -5 1 2", "f 1 2 x", "v 1 2"] {
+        let wrong = read_as(&format!("{corners}{face}\n")).unwrap_err();
+        assert!(wrong.starts_with("m.obj: line 6: "), "{face}: {wrong}");
+    }
+}

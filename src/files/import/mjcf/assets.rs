@@ -10,6 +10,7 @@ use super::defaults::Defaults;
 use crate::files::import::document::Wrong;
 use crate::files::import::located::Located;
 use crate::files::import::mesh::{self, Mesh};
+use crate::files::import::notes::absent;
 use crate::files::import::xml::Element;
 
 /// The meshes of a description.
@@ -49,7 +50,7 @@ impl<'a> Assets<'a> {
         })
     }
 
-    /// The mesh of a geom in the frame of the geom, or the file that is not there.
+    /// The mesh of a geom in the frame of the geom, or why there is none.
     pub(super) fn mesh(&mut self, geom: &Element<'a>) -> Result<Result<Rc<Mesh>, String>, Wrong> {
         let name = geom.needed("mesh")?;
         if let Some(mesh) = self.read.get(name) {
@@ -60,10 +61,12 @@ impl<'a> Assets<'a> {
                 geom.wrong(format!("has mesh `{name}`, which no asset is; add it or correct the name"))
             );
         };
-        let Some(file) = element.text("file") else { return Ok(Err(name.to_owned())) };
+        let Some(file) = element.text("file") else {
+            return Ok(Err(format!("mesh `{name}` is not in a file")));
+        };
         let own = if self.strips_paths { file.rsplit(['/', '\\']).next().unwrap_or(file) } else { file };
         let Some(path) = self.files.find(self.folder, own).map_err(|wrong| element.wrong(wrong))? else {
-            return Ok(Err(file.to_owned()));
+            return Ok(Err(absent(file)));
         };
         let scale = element.numbers("scale")?.unwrap_or([1.0; 3]);
         let shift = Vector3::from(element.numbers("refpos")?.unwrap_or_default());

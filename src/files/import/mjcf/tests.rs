@@ -296,7 +296,7 @@ fn what_a_tree_has_not_or_nobody_knows_is_refused() {
         };
         let read = |before: &str, tie: &str, strict| read_in(Path::new(""), &text(before, tie), strict);
         assert!(read("", tie, true).unwrap_err().contains("joins bodies in addition to the tree"));
-        let note = "bodies are tied together in addition to the tree, which is left out (1): a with b";
+        let note = "ties between bodies beside the tree are left out (1): a with b";
         assert_eq!(read("", tie, false).unwrap().notes, [note]);
         let loose = tie.replace("/>", " active='false'/>");
         let world = tie.replace("'a'", "'world'");

@@ -66,6 +66,11 @@ fn loops_and_files_that_are_not_there_are_refused() {
     assert_eq!(gone.unwrap_err(), "line 1: include names `b.xml`, which is not there");
     let cut = of(&[("m.xml", b"<mujoco><include file='b.xml'/></mujoco>"), ("b.xml", b"<mujoco>")]);
     assert!(cut.unwrap_err().starts_with("b.xml: this is not well-formed XML"));
+    let entity = of(&[
+        ("m.xml", b"<mujoco><include file='b.xml'/></mujoco>"),
+        ("b.xml", b"<!DOCTYPE f [<!ENTITY x '<a/>'>]><f><b/>&x;</f>"),
+    ]);
+    assert_eq!(entity.unwrap_err(), "line 1: f contains entities that stand for elements; write them out");
     // Each file includes the next one twice: more than can be read.
     let names: Vec<String> = (0..40).map(|at| format!("{at}.xml")).collect();
     let texts: Vec<String> = (1..41)

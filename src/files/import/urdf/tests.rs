@@ -155,7 +155,7 @@ fn a_mesh_that_is_there_is_a_box_around_it_and_one_that_is_not_is_a_box_of_the_i
     near(solid.pose.rotation * Vector3::x(), [0.0, 1.0, 0.0]);
     assert_eq!(
         absent.notes,
-        ["link `a`: mesh `gone.stl` is not there; a box of its inertia, or its other shapes, stand for it"]
+        ["link `a`: mesh `gone.stl` is not there; a box with its inertia stands for it"]
     );
     // A part of its shapes stands for all of them, and without any the mass is kept.
     assert_eq!(read(&format!("<collision>{BALL}</collision>{}", mesh("gone.stl"))).links[0].solids.len(), 1);

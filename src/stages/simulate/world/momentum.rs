@@ -80,7 +80,7 @@ pub(super) fn with_angular_momentum(wanted: Vector3, parts: &[Moving]) -> Vec<(V
     parts.iter().map(rest).collect()
 }
 
-fn matrix(rows: &[Vector3; 3]) -> Matrix3<f64> {
+pub(super) fn matrix(rows: &[Vector3; 3]) -> Matrix3<f64> {
     Matrix3::from_fn(|row, column| rows[row][column])
 }
 

@@ -1,5 +1,5 @@
-//! Rigid bodies of the engine: parts that are fixed to each other are one, so that the cost of a step does not depend on how many
-//! shapes a part has.
+//! Rigid bodies of the engine: parts that are fixed to each other are one, so that a step of the engine costs the same for
+//! any number of shapes.
 
 use std::mem::MaybeUninit;
 
@@ -7,7 +7,7 @@ use nalgebra::{Matrix3, Vector3 as Column};
 use ode_sys as ode;
 
 use super::Pose;
-use super::momentum::Inertia;
+use super::momentum::{Inertia, matrix};
 use crate::stages::agent::{Agent, Part, Shape, Vector3};
 
 /// Where a part is on its rigid body.
@@ -17,10 +17,6 @@ pub(super) struct Mount {
     pub body: usize,
     /// Centre of the part and its rotation in the frame of the body, if it is not the body by itself.
     within: Option<(Column<f64>, Matrix3<f64>)>,
-}
-
-fn matrix(rows: &[Vector3; 3]) -> Matrix3<f64> {
-    Matrix3::from_fn(|row, column| rows[row][column])
 }
 
 fn rows(matrix: &Matrix3<f64>) -> [Vector3; 3] {
