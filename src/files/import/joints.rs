@@ -17,8 +17,10 @@ const NEAR: f64 = 0.05;
 pub(super) const STAND_IN: f64 = 0.01;
 /// Mass of a ball between two places about which a part turns, as a share of the part's.
 pub(super) const BETWEEN: f64 = 0.005;
-/// Cosine from which on two axes no longer count as at right angles; the sine of two that are the same.
-const OBLIQUE: f64 = 1e-6;
+/// Sine below which two axes are the same.
+const SAME_AXIS: f64 = 1e-6;
+/// Cosine above which a note says so: below, it is the rounding of a description that writes 1.57 for a right angle.
+const NOTED: f64 = 5e-3;
 
 /// A joint as a body file has it.
 pub(super) struct Joint {
@@ -121,7 +123,7 @@ impl Joint {
             [] if balls == 1 => (joint(JointName::Ball, None), None),
             [axis] if balls == 0 => (joint(JointName::Hinge, Some(vec![axis])), None),
             [first, ref others @ ..]
-                if balls == 0 && others.iter().all(|axis| first.cross(axis).norm() < OBLIQUE) =>
+                if balls == 0 && others.iter().all(|axis| first.cross(axis).norm() < SAME_AXIS) =>
             {
                 let note = format!("its {} hinges have the same axis and became one hinge", axes.len());
                 (joint(JointName::Hinge, Some(vec![first])), Some(note))
@@ -136,7 +138,7 @@ impl Joint {
                     )
                 };
                 let axes = vec![first, (second - first * cosine).normalize()];
-                (joint(JointName::Universal, Some(axes)), (cosine.abs() > OBLIQUE).then(note))
+                (joint(JointName::Universal, Some(axes)), (cosine.abs() > NOTED).then(note))
             }
             _ => {
                 let note = format!("its {} joints at one place became a ball joint", turns.len());

@@ -73,6 +73,9 @@ fn hinges_at_one_place_become_one_joint() {
     let (part, notes) = turned(&[hinge(X), hinge([FRAC_1_SQRT_2, 0.0, FRAC_1_SQRT_2])]).unwrap();
     assert_eq!((part.joint, part.axes), (Some(JointName::Universal), Some(vec![X, Z])));
     assert!(notes[0].starts_with("link `b`: its two hinges are at 45.0 degrees"), "{notes:?}");
+    // An angle that was written as 1.57 is a right one.
+    let (part, notes) = turned(&[hinge(X), hinge([8e-4, 0.0, (1.0 - 64e-8_f64).sqrt()])]).unwrap();
+    assert_eq!((part.joint, part.axes, notes.len()), (Some(JointName::Universal), Some(vec![X, Z]), 0));
     let (part, notes) = turned(&[hinge(X), hinge([-1.0, 0.0, 0.0])]).unwrap();
     assert_eq!((part.joint, part.axes), (Some(JointName::Hinge), Some(vec![X])));
     assert!(notes[0].contains("have the same axis"), "{notes:?}");
