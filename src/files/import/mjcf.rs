@@ -243,8 +243,7 @@ impl<'a> Bodies<'a> {
                 }
                 Found::Endless => continue,
             };
-            let weighs = self.defaults.weighs(geom)?;
-            if !weighs {
+            if !self.defaults.weighs(geom)? {
                 solid.mass = Some(0.0);
             }
             mass += solid.own_mass();

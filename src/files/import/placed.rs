@@ -91,21 +91,11 @@ pub(super) struct Read {
     pub notes: Vec<String>,
 }
 
-/// Volume, m³.
-fn volume(shape: &Shape) -> f64 {
-    match *shape {
-        Shape::Cylinder { radius, length } => PI * radius * radius * length,
-        Shape::Capsule { radius, length } => PI * radius * radius * (length + 4.0 / 3.0 * radius),
-        Shape::Sphere { radius } => 4.0 / 3.0 * PI * radius.powi(3),
-        Shape::Box { sides: [x, y, z] } => x * y * z,
-    }
-}
-
 /// Gives solids this mass, kg, together: in the ratio of the masses that they have, or of their volumes if one has none. A mass of 0 says
 /// nothing of them; neither does any mass of what has no volume, which is refused as a part.
 pub(super) fn weigh(solids: &mut [Solid], mass: f64) {
     let masses: Vec<f64> = solids.iter().map(Solid::own_mass).collect();
-    let volumes: Vec<f64> = solids.iter().map(|solid| volume(&solid.shape)).collect();
+    let volumes: Vec<f64> = solids.iter().map(Solid::bulk).collect();
     let shares = if masses.iter().all(|mass| *mass > 0.0) { masses } else { volumes };
     let all: f64 = shares.iter().sum();
     for (solid, share) in solids.iter_mut().zip(shares) {
@@ -199,7 +189,12 @@ impl Solid {
 
     /// Volume of its shape, m³; of a mesh that of the box.
     pub(super) fn bulk(&self) -> f64 {
-        volume(&self.shape)
+        match self.shape {
+            Shape::Cylinder { radius, length } => PI * radius * radius * length,
+            Shape::Capsule { radius, length } => PI * radius * radius * (length + 4.0 / 3.0 * radius),
+            Shape::Sphere { radius } => 4.0 / 3.0 * PI * radius.powi(3),
+            Shape::Box { sides: [x, y, z] } => x * y * z,
+        }
     }
 
     /// Area of what it stands for, m².
@@ -209,7 +204,7 @@ impl Solid {
 
     /// Volume of what it stands for, m³.
     pub(super) fn volume(&self) -> f64 {
-        self.mesh.as_ref().map_or_else(|| volume(&self.shape), |(mesh, _)| mesh.volume())
+        self.mesh.as_ref().map_or_else(|| self.bulk(), |(mesh, _)| mesh.volume())
     }
 
     /// Its mass, kg; that of water if it is not known.
@@ -219,15 +214,15 @@ impl Solid {
 
     /// Whether it is too small or too light to be a part, such as a sphere of radius 0 that only marks a place.
     pub(super) fn is_dummy(&self) -> bool {
-        let density = self.mass.map_or(DENSITY, |mass| mass / volume(&self.shape));
+        let density = self.mass.map_or(DENSITY, |mass| mass / self.bulk());
         // What is negative is a mistake, which is refused as a part.
-        (0.0..TINY).contains(&volume(&self.shape)) || (0.0..1e-6).contains(&density)
+        (0.0..TINY).contains(&self.bulk()) || (0.0..1e-6).contains(&density)
     }
 
     /// Its density as a part, kg/m³, if its mass is known.
     pub(super) fn density(&self) -> Option<f64> {
         let mass = self.mass.or_else(|| self.mesh.as_ref().map(|_| self.own_mass()));
-        mass.map(|mass| significant(mass / volume(&self.shape)))
+        mass.map(|mass| significant(mass / self.bulk()))
     }
 
     /// Its sensors on the mesh that it stands for: place and direction of each in the common frame. None of a shape that is no mesh:

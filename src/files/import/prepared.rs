@@ -15,6 +15,7 @@ use crate::stages::agent::Shape;
 
 /// Density, kg/m³, above which a mass is not that of its shape: four times that of osmium, the densest metal.
 const DENSEST: f64 = 1e5;
+
 /// Links that a body can have, and notes on what was changed. Messages call a link `word`.
 pub(super) fn prepared(
     word: &str,
@@ -117,15 +118,12 @@ fn one_tree(
 /// Gives a small ball without skin to each rigid body without shape on which several others turn.
 fn stand_ins(word: &str, links: &mut [Link], strict: bool, notes: &mut Vec<String>) -> Result<(), Wrong> {
     let tree = Tree::new(links);
-    let forks: Vec<usize> = tree
-        .rigids
-        .iter()
-        .filter(|rigid| rigid.lead.is_none() && rigid.branches.len() > 1)
-        .map(|rigid| rigid.links[0])
-        .collect();
-    if let Some(names) = names(forks.iter().map(|&at| &*links[at].name)) {
+    let forks = tree.rigids.iter().filter(|rigid| rigid.lead.is_none() && rigid.branches.len() > 1);
+    let mass = |members: &[usize]| members.iter().map(|&at| links[at].bare_mass).sum::<f64>();
+    let forks: Vec<(usize, f64)> = forks.map(|rigid| (rigid.links[0], mass(&rigid.links))).collect();
+    if let Some(names) = names(forks.iter().map(|(at, _)| &*links[*at].name)) {
         if strict {
-            let name = &links[forks[0]].name;
+            let name = &links[forks[0].0].name;
             return Err(format!(
                 "{word} `{name}` has no shape, but several others rotate on it; give it a shape"
             ));
@@ -134,11 +132,6 @@ fn stand_ins(word: &str, links: &mut [Link], strict: bool, notes: &mut Vec<Strin
             "what has no shape, but carries several that rotate on it, became a ball without skin {names}"
         ));
     }
-    let mass = |at: usize| {
-        let members = || (0..links.len()).filter(|other| tree.rigid_of[*other] == tree.rigid_of[at]);
-        members().map(|other| links[other].bare_mass).sum::<f64>()
-    };
-    let forks: Vec<(usize, f64)> = forks.iter().map(|&at| (at, mass(at))).collect();
     for (at, mass) in forks {
         let pose = Isometry3::from_parts(Translation3::from(links[at].origin), Default::default());
         // As large as its mass is as water.
