@@ -51,7 +51,7 @@ impl Recording {
 
     /// The true parts of the sensors that are left, and the true tree.
     pub fn truth(&self, of_all: &Truth) -> Truth {
-        Truth { labels: self.of_sensors(&of_all.labels), tree: of_all.tree.clone() }
+        Truth { labels: self.of_sensors(&of_all.labels), ..of_all.clone() }
     }
 }
 
@@ -74,7 +74,7 @@ mod tests {
         assert_eq!(recording.dropped, [(1, Fault::Dead), (2, Fault::NotFinite)]);
         assert_eq!((recording.lost_samples, recording.noisy, recording.signed), (1, 0, false));
         assert_eq!(recording.all_sensors(), 4);
-        let truth = Truth { labels: vec![7, 8, 8, 9], tree: vec![(8, 7), (9, 8)] };
+        let truth = Truth::new(vec![7, 8, 8, 9], vec![(8, 7), (9, 8)]);
         assert_eq!(recording.truth(&truth), Truth { labels: vec![7, 9], ..truth });
     }
 }

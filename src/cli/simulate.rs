@@ -29,7 +29,7 @@ use crate::tasks::progress::progress;
 /// With --movement, the body moves as it was recorded instead, and no physics engine is asked: its sensors feel the speeds that
 /// the recording has, at its frames, or every sense.interval if --settings has that (not in the paper).
 ///
-/// Writes into DIR: tactile.npy (float32, T x M, Pa), labels.csv (sensor,part), tree.csv (child,parent) and
+/// Writes into DIR: tactile.npy (float32, T x M, Pa), labels.csv (sensor,part), tree.csv (child,parent; place, where several parts turn about one) and
 /// joint-angles.csv (time_s, then the angles of each joint in rad; T + 1 rows); for `view` also solids.csv, sensors.csv and
 /// poses.npy (float32, T + 1 x 7 for each solid); with --body or --movement also names.csv (part,name). T is the number
 /// of samples in time, M the number of sensors.
@@ -99,7 +99,8 @@ impl Simulate {
         told: &str,
     ) -> Result<()> {
         let out = &self.out;
-        tables::write_truth(&out.join("labels.csv"), &out.join("tree.csv"), &agent.truth())?;
+        let truth = agent.truth();
+        tables::write_truth(&out.join("labels.csv"), &out.join("tree.csv"), &truth)?;
         if let Some(names) = names {
             let rows = names.into_iter().enumerate().map(|(part, name)| NameRow { part, name });
             tables::write_rows(&out.join("names.csv"), rows)?;
@@ -111,10 +112,16 @@ impl Simulate {
             settings.interval,
         )?;
         MovedBody::of(agent, trajectory).write(out, &agent.rigid_bodies())?;
+        if truth.shares_places() {
+            say(
+                "note: several parts turn about one place, where touch cannot tell which of them carries which: joints with the same \
+                 `place` in tree.csv",
+            )?;
+        }
         let tactile = sense(agent, trajectory, settings);
         npy::write_tactile(&out.join("tactile.npy"), &tactile)?;
         let (samples, sensors) = (tactile.samples, tactile.sensors());
-        let parts = agent.tree().len() + 1;
+        let parts = truth.tree.len() + 1;
         say(format!("{samples} samples of {sensors} sensors on {parts} parts, {told}, in {}", out.display()))
     }
 }

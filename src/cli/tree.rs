@@ -91,7 +91,7 @@ impl Tree {
             let all = recording.truth(&truth);
             let kept =
                 all.labels.iter().zip(&own).filter(|(_, part)| part.is_some()).map(|(label, _)| *label);
-            let truth = Truth { labels: kept.collect(), tree: all.tree };
+            let truth = Truth { labels: kept.collect(), ..all };
             print_score(&score(&labels, &found.tree, &truth, 1.0))?;
         }
         Ok(ExitCode::SUCCESS)

@@ -8,6 +8,7 @@ use serde_json::Value;
 
 use super::error::FileError;
 use super::whole::write_whole;
+use crate::numerics::partition::is_tree;
 use crate::stages::agent::Joint;
 use crate::stages::evaluate::{Score, parts};
 use crate::stages::schema::Keep;
@@ -84,15 +85,24 @@ struct LabelRow {
 struct TreeRow {
     child: usize,
     parent: usize,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    place: Option<usize>,
 }
 
-/// Writes the truth as a table `sensor,part` and a table `child,parent`.
+/// Writes the truth as a table `sensor,part` and a table `child,parent`; a third column, `place`, follows where several parts turn
+/// about one place: joints with the same number are at the same place.
 pub fn write_truth(labels: &Path, tree: &Path, truth: &Truth) -> Result<(), FileError> {
     write_rows(labels, truth.labels.iter().enumerate().map(|(sensor, &part)| LabelRow { sensor, part }))?;
-    write_rows(tree, truth.tree.iter().map(|&(child, parent)| TreeRow { child, parent }))
+    let shares = truth.shares_places();
+    let row = |(&(child, parent), &place): (&(usize, usize), &usize)| TreeRow {
+        child,
+        parent,
+        place: shares.then_some(place),
+    };
+    write_rows(tree, truth.tree.iter().zip(&truth.places).map(row))
 }
 
-/// Reads the truth: a part for each of `sensors` sensors, and a tree over all the parts.
+/// Reads the truth: a part for each of `sensors` sensors, and a tree over all the parts, as [`write_truth`] writes them.
 pub fn read_truth(labels: &Path, tree: &Path, sensors: usize) -> Result<Truth, FileError> {
     let part_of = read_parts(labels, sensors)?;
     if let Some(sensor) = part_of.iter().position(Option::is_none) {
@@ -101,10 +111,19 @@ pub fn read_truth(labels: &Path, tree: &Path, sensors: usize) -> Result<Truth, F
             format!("sensor {sensor} of {sensors} has no part; give each sensor one row"),
         ));
     }
-    let truth = Truth {
-        labels: part_of.into_iter().flatten().collect(),
-        tree: read_rows(tree)?.into_iter().map(|TreeRow { child, parent }| (child, parent)).collect(),
-    };
+    let rows: Vec<TreeRow> = read_rows(tree)?;
+    let edges = rows.iter().map(|row| (row.child, row.parent)).collect();
+    let mut truth = Truth::new(part_of.into_iter().flatten().collect(), edges);
+    if let Some(places) = rows.iter().map(|row| row.place).collect() {
+        truth.places = places;
+    } else if let Some(line) =
+        rows.iter().position(|row| row.place.is_none()).filter(|_| rows.iter().any(|row| row.place.is_some()))
+    {
+        return Err(FileError::new(
+            tree,
+            format!("line {}: the joint has no place; give each one, or none", line + 2),
+        ));
+    }
     check_tree(&truth).map_err(|message| FileError::new(tree, message))?;
     Ok(truth)
 }
@@ -131,18 +150,12 @@ fn check_tree(truth: &Truth) -> Result<(), String> {
     let mut parts = truth.labels.clone();
     parts.sort_unstable();
     parts.dedup();
-    let index =
-        |part| parts.binary_search(&part).map_err(|_| format!("part {part} has no sensor in the labels"));
-    // Each part points towards the representative of all that it is connected with.
-    let mut towards: Vec<usize> = (0..parts.len()).collect();
-    let mut cycle = false;
-    for &(child, parent) in &truth.tree {
-        let (child, parent) =
-            (representative(&mut towards, index(child)?), representative(&mut towards, index(parent)?));
-        cycle |= child == parent;
-        towards[child] = parent;
+    let unknown =
+        truth.tree.iter().flat_map(|&(a, b)| [a, b]).find(|part| parts.binary_search(part).is_err());
+    if let Some(part) = unknown {
+        return Err(format!("part {part} has no sensor in the labels"));
     }
-    if cycle || truth.tree.len() + 1 != parts.len() {
+    if !is_tree(&truth.tree) || truth.tree.len() + 1 != parts.len() {
         return Err(format!(
             "{} edges do not make a tree over {} parts: give one edge fewer than parts, without a cycle",
             truth.tree.len(),
@@ -150,15 +163,6 @@ fn check_tree(truth: &Truth) -> Result<(), String> {
         ));
     }
     Ok(())
-}
-
-/// The representative of all parts that `part` is connected with (union–find with path halving).
-fn representative(towards: &mut [usize], mut part: usize) -> usize {
-    while towards[part] != part {
-        towards[part] = towards[towards[part]];
-        part = towards[part];
-    }
-    part
 }
 
 /// Reads rows by their header.
@@ -296,13 +300,19 @@ mod tests {
     fn the_truth_is_read_back_and_its_mistakes_are_named() {
         let folder = tempfile::tempdir().unwrap();
         let (labels, tree) = (folder.path().join("labels.csv"), folder.path().join("tree.csv"));
-        let truth = Truth { labels: vec![3, 3, 1, 7], tree: vec![(1, 3), (7, 1)] };
+        let truth = Truth::new(vec![3, 3, 1, 7], vec![(1, 3), (7, 1)]);
         write_truth(&labels, &tree, &truth).unwrap();
         assert_eq!(read_truth(&labels, &tree, 4).unwrap(), truth);
 
+        // A trunk with two legs at one place.
+        let shared = Truth { places: vec![0, 0], ..Truth::new(vec![0, 0, 1, 2], vec![(1, 0), (2, 0)]) };
+        write_truth(&labels, &tree, &shared).unwrap();
+        assert_eq!(std::fs::read_to_string(&tree).unwrap(), "child,parent,place\n1,0,0\n2,0,0\n");
+        assert_eq!(read_truth(&labels, &tree, 4).unwrap(), shared);
+
         // A body of many parts, its edges from the leaves to the root.
         let many = 20_000;
-        let long = Truth { labels: (0..many).collect(), tree: (1..many).rev().map(|i| (i, i - 1)).collect() };
+        let long = Truth::new((0..many).collect(), (1..many).rev().map(|i| (i, i - 1)).collect());
         write_truth(&labels, &tree, &long).unwrap();
         assert_eq!(read_truth(&labels, &tree, many).unwrap(), long);
 
@@ -323,6 +333,7 @@ mod tests {
         rejects(good_labels, "child,parent\n1,0\n9,0\n", "part 9 has no sensor");
         rejects(good_labels, "child,parent\n1,0\n0,1\n2,0\n", "3 edges do not make a tree over 3 parts");
         rejects(good_labels, "child,parent\n1,0\n2,2\n", "do not make a tree");
+        rejects(good_labels, "child,parent,place\n1,0,0\n2,0,\n", "line 3: the joint has no place");
         rejects(good_labels, "", "0 edges do not make a tree");
         rejects("", good_tree, "sensor 0 of 3 has no part");
         rejects("sensor,part\n0,0\n1,-1\n", good_tree, "line 3: ");

@@ -1,6 +1,6 @@
 //! Count, rename and compare partitions.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// How many items have each label.
 pub fn sizes<T: Ord + Copy>(labels: &[T]) -> BTreeMap<T, usize> {
@@ -36,6 +36,45 @@ pub fn adjusted_rand_index(first: &[usize], second: &[usize]) -> f64 {
     if largest == expected { 1.0 } else { (together - expected) / (largest - expected) }
 }
 
+/// Which items are connected (union–find with path halving).
+#[derive(Debug, Clone)]
+pub struct Connected {
+    /// Each item points towards the representative of all that it is connected with.
+    towards: Vec<usize>,
+}
+
+impl Connected {
+    /// `items` items, each alone.
+    pub fn new(items: usize) -> Self {
+        Self { towards: (0..items).collect() }
+    }
+
+    /// Connects two items. Returns whether they were apart before.
+    pub fn connect(&mut self, a: usize, b: usize) -> bool {
+        let (a, b) = (self.representative(a), self.representative(b));
+        self.towards[a] = b;
+        a != b
+    }
+
+    /// The same item for all that are connected.
+    pub fn representative(&mut self, mut item: usize) -> usize {
+        while self.towards[item] != item {
+            self.towards[item] = self.towards[self.towards[item]];
+            item = self.towards[item];
+        }
+        item
+    }
+}
+
+/// Whether edges make a tree over the nodes that they name. No edge does, over one node.
+pub fn is_tree(edges: &[(usize, usize)]) -> bool {
+    let nodes: BTreeMap<usize, usize> =
+        edges.iter().flat_map(|&(a, b)| [a, b]).collect::<BTreeSet<_>>().into_iter().zip(0..).collect();
+    let mut connected = Connected::new(nodes.len());
+    edges.iter().all(|(a, b)| connected.connect(nodes[a], nodes[b]))
+        && (edges.is_empty() || edges.len() + 1 == nodes.len())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -54,5 +93,12 @@ mod tests {
             let ari = adjusted_rand_index(&first, &second);
             assert!((ari - expected).abs() < 1e-12, "{first:?} {second:?}: {ari}");
         }
+    }
+
+    #[test]
+    fn a_tree_connects_all_its_nodes_once() {
+        assert!(is_tree(&[]) && is_tree(&[(7, 3)]) && is_tree(&[(7, 3), (9, 3), (1, 9)]));
+        assert!(!is_tree(&[(7, 7)]) && !is_tree(&[(1, 2), (2, 1)]) && !is_tree(&[(1, 2), (3, 4)]));
+        assert!(!is_tree(&[(1, 2), (2, 3), (3, 1), (4, 5)]));
     }
 }

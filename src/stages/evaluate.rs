@@ -1,14 +1,14 @@
 //! Stage 7, `evaluate`: compare estimated parts and tree with the truth (section 5.2).
 //!
-//! In: the part of each sensor and a tree over the parts, such as those of a posterior sample, and the [`Truth`]. Out: a [`Score`]: the adjusted Rand index, whether the tree is
-//! eligible, and whether it is right.
+//! In: the part of each sensor and a tree over the parts, such as those of a posterior sample, and the [`Truth`]. Out: a
+//! [`Score`]: the adjusted Rand index, whether the tree is eligible, and whether it is right.
 
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
 pub use crate::numerics::partition::adjusted_rand_index;
-use crate::numerics::partition::sizes;
+use crate::numerics::partition::{is_tree, sizes};
 use crate::numerics::range::{Checked, check};
 use crate::stages::tree::{Edge, Truth};
 
@@ -91,25 +91,23 @@ pub fn parts_match(labels: &[usize], truth: &Truth) -> bool {
     matching(labels, truth).is_some()
 }
 
-/// Whether an edge joins clusters whose parts are joined, each cluster being the part of most of its sensors.
+/// Whether an edge joins clusters whose parts are joined, or turn about one place; each cluster is the part of most of its sensors.
 pub fn joins(labels: &[usize], edge: &Edge, truth: &Truth) -> bool {
     let parts = majority(labels, truth);
-    let Some((a, b)) = parts.get(&edge.child).zip(parts.get(&edge.parent)) else { return false };
-    truth.tree.iter().any(|&(child, parent)| [(child, parent), (parent, child)].contains(&(*a, *b)))
+    parts.get(&edge.child).zip(parts.get(&edge.parent)).is_some_and(|(&a, &b)| truth.meet(a, b))
 }
 
 /// Whether the estimated tree is the true one: every active cluster is matched to the part that most of
-/// its sensors are on, every part is matched once, and matched edges are the true edges.
+/// its sensors are on, every part is matched once, and matched edges are the true edges, or others that connect parts which turn
+/// about the same place.
 fn tree_correct(labels: &[usize], tree: &[Edge], truth: &Truth) -> bool {
     let Some(matching) = matching(labels, truth) else { return false };
-    let undirected = |a: usize, b: usize| (a.min(b), a.max(b));
     // A node of a single sensor, which the authors' code has, matches no part.
-    let parts = |edge: &Edge| Some(undirected(*matching.get(&edge.child)?, *matching.get(&edge.parent)?));
-    let Some(mut estimated) = tree.iter().map(parts).collect::<Option<Vec<_>>>() else { return false };
-    let mut expected: Vec<_> = truth.tree.iter().map(|&(child, parent)| undirected(child, parent)).collect();
-    estimated.sort_unstable();
-    expected.sort_unstable();
-    estimated == expected
+    let parts = |edge: &Edge| Some((*matching.get(&edge.child)?, *matching.get(&edge.parent)?));
+    let Some(estimated) = tree.iter().map(parts).collect::<Option<Vec<_>>>() else { return false };
+    estimated.len() == truth.tree.len()
+        && estimated.iter().all(|&(a, b)| truth.meet(a, b))
+        && is_tree(&estimated)
 }
 
 #[cfg(test)]
@@ -117,7 +115,7 @@ mod tests {
     use super::*;
 
     fn chain_of_three() -> Truth {
-        Truth { labels: [[0; 4], [1; 4], [2; 4]].concat(), tree: vec![(1, 0), (2, 1)] }
+        Truth::new([[0; 4], [1; 4], [2; 4]].concat(), vec![(1, 0), (2, 1)])
     }
 
     fn scored(labels: &[usize], edges: &[(usize, usize)], ari: f64) -> Score {
@@ -162,5 +160,26 @@ mod tests {
         assert!(!parts_match(&[[0; 4], [0; 4], [2; 4]].concat(), &truth));
         let joined = |child, parent| joins(&few_wrong, &Edge { child, parent }, &truth);
         assert!(joined(7, 2) && joined(5, 2) && !joined(7, 5) && !joined(7, 9));
+    }
+
+    #[test]
+    fn parts_that_turn_about_one_place_may_be_joined_either_way() {
+        // A trunk 0 with legs 1 and 2 at one place, and a foot 3 on 1.
+        let labels = [[0; 4], [1; 4], [2; 4], [3; 4]].concat();
+        let truth =
+            Truth { places: vec![0, 0, 1], ..Truth::new(labels.clone(), vec![(1, 0), (2, 0), (3, 1)]) };
+        let right = |edges: [(usize, usize); 3]| {
+            score(&labels, &edges.map(|(child, parent)| Edge { child, parent }), &truth, 1.0).tree_correct
+        };
+        assert!(
+            right([(1, 0), (2, 0), (3, 1)])
+                && right([(1, 0), (2, 1), (3, 1)])
+                && right([(2, 0), (1, 2), (3, 1)])
+        );
+        assert!(!right([(1, 0), (2, 0), (3, 0)]) && !right([(1, 0), (2, 0), (3, 2)]));
+        // A cycle that leaves the foot alone.
+        assert!(!right([(1, 0), (2, 1), (0, 2)]));
+        assert!(joins(&labels, &Edge { child: 2, parent: 1 }, &truth));
+        assert!(!joins(&labels, &Edge { child: 3, parent: 0 }, &truth));
     }
 }

@@ -21,9 +21,35 @@ pub struct Truth {
     pub labels: Vec<usize>,
     /// The tree as (child, parent) pairs of parts.
     pub tree: Vec<(usize, usize)>,
+    /// The place of each edge's joint. Where several parts turn about one place, such as a trunk and two legs, touch cannot tell
+    /// which of them carries which: edges of one place are as good as each other.
+    pub places: Vec<usize>,
 }
 
 impl Truth {
+    /// Each joint at a place of its own.
+    pub fn new(labels: Vec<usize>, tree: Vec<(usize, usize)>) -> Self {
+        Self { labels, places: (0..tree.len()).collect(), tree }
+    }
+
+    /// Whether a joint joins two parts, or could: they turn about one place.
+    pub fn meet(&self, a: usize, b: usize) -> bool {
+        let places = |part: usize| {
+            let own =
+                move |&(&(child, parent), _): &(&(usize, usize), &usize)| child == part || parent == part;
+            self.tree.iter().zip(&self.places).filter(own).map(|(_, place)| *place)
+        };
+        a != b && places(a).any(|place| places(b).any(|other| other == place))
+    }
+
+    /// Whether some joints are at one place.
+    pub fn shares_places(&self) -> bool {
+        let mut places = self.places.clone();
+        places.sort_unstable();
+        places.dedup();
+        places.len() < self.places.len()
+    }
+
     /// Number of parts. A part with a single sensor counts, although no estimate can contain it.
     pub fn parts(&self) -> usize {
         sizes(&self.labels).len()

@@ -105,7 +105,7 @@ pub fn body(dims: usize, separation: f64, rng: &mut Stream) -> Body {
     drawn.sort_unstable();
     Body {
         map: BodyMap { dims, coordinates },
-        truth: Truth { labels, tree },
+        truth: Truth::new(labels, tree),
         identifiable: likeliest == drawn,
     }
 }

@@ -58,7 +58,7 @@ pub(crate) struct TreeEdge {
 
 impl Parts {
     /// The true ones.
-    pub(crate) fn of_truth(Truth { labels, tree }: &Truth) -> Self {
+    pub(crate) fn of_truth(Truth { labels, tree, .. }: &Truth) -> Self {
         let edge = |&(child, parent): &(usize, usize)| TreeEdge { child, parent, support: None };
         Self { of: labels.iter().copied().map(Some).collect(), tree: tree.iter().map(edge).collect() }
     }

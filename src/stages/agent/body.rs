@@ -3,7 +3,11 @@
 use std::f64::consts::FRAC_1_SQRT_2;
 
 use super::shape::{Shape, Vector3};
+use crate::numerics::partition::{Connected, named_by_appearance};
 use crate::stages::tree::Truth;
+
+/// Joints of one part that are nearer to each other than this are at one place, m.
+const ONE_PLACE: f64 = 1e-3;
 
 /// A rigid part, in the rest pose.
 #[derive(Debug, Clone, PartialEq)]
@@ -124,30 +128,52 @@ impl Agent {
         self.sites.iter().map(|site| bodies[site.part]).collect()
     }
 
-    /// The true tree as (child, parent) pairs; parts that are fixed to each other are one. A part without sensors is none: what
-    /// it carries is joined to what carries it, and on the root to the first of them.
-    pub fn tree(&self) -> Vec<(usize, usize)> {
+    /// The true part of each sensor and the true tree. Parts that are fixed to each other are one. A part without sensors is none:
+    /// what it carries is joined to what carries it, and on the root to the first of them. Joints are at one place if they are
+    /// less than a millimetre apart, or on one part without sensors.
+    pub fn truth(&self) -> Truth {
         let bodies = self.rigid_bodies();
         let mut is_felt = vec![false; bodies.len()];
         self.sites.iter().for_each(|site| is_felt[bodies[site.part]] = true);
         // What stands for each rigid body; nothing yet for those without sensors from the root on.
         let mut stands: Vec<Option<usize>> =
             (0..bodies.len()).map(|body| is_felt[body].then_some(body)).collect();
-        let (mut first, mut tree) = (None, Vec::new());
-        for joint in self.joints.iter().filter(|joint| joint.freedom != Freedom::Fixed) {
+        let (mut first, mut tree, mut joints_of_tree) = (None, Vec::new(), Vec::new());
+        for (at, joint) in self.joints.iter().enumerate().filter(|(_, joint)| joint.freedom != Freedom::Fixed)
+        {
             let (child, parent) = (bodies[joint.child], stands[bodies[joint.parent]].or(first));
             match parent {
-                Some(parent) if is_felt[child] => tree.push((child, parent)),
+                Some(parent) if is_felt[child] => {
+                    tree.push((child, parent));
+                    joints_of_tree.push(at);
+                }
                 None if is_felt[child] => first = Some(child),
                 parent => stands[child] = parent,
             }
         }
-        tree
+        let mut places = self.places(&bodies, &is_felt);
+        let places = joints_of_tree.into_iter().map(|joint| places.representative(joint)).collect::<Vec<_>>();
+        Truth { places: named_by_appearance(&places), ..Truth::new(self.labels(), tree) }
     }
 
-    /// The true part of each sensor and the true tree.
-    pub fn truth(&self) -> Truth {
-        Truth { labels: self.labels(), tree: self.tree() }
+    /// Which joints are at one place.
+    fn places(&self, bodies: &[usize], is_felt: &[bool]) -> Connected {
+        let mut places = Connected::new(self.joints.len());
+        let moving: Vec<(usize, &Joint)> =
+            self.joints.iter().enumerate().filter(|(_, joint)| joint.freedom != Freedom::Fixed).collect();
+        let near = |a: &Joint, b: &Joint| {
+            a.anchor.iter().zip(&b.anchor).map(|(a, b)| (a - b).powi(2)).sum::<f64>() < ONE_PLACE.powi(2)
+        };
+        let parts = |joint: &Joint| [bodies[joint.parent], bodies[joint.child]];
+        for (at, &(a, joint)) in moving.iter().enumerate() {
+            for &(b, other) in &moving[..at] {
+                let mut common = parts(joint).into_iter().filter(|part| parts(other).contains(part));
+                if common.any(|part| !is_felt[part] || near(joint, other)) {
+                    places.connect(a, b);
+                }
+            }
+        }
+        places
     }
 }
 
@@ -176,7 +202,7 @@ mod tests {
             sites: (0..5).map(site).collect(),
         };
         assert_eq!(agent.labels(), [0, 1, 1, 2, 0]);
-        assert_eq!(agent.tree(), [(1, 0), (2, 1)]);
+        assert_eq!(agent.truth().tree, [(1, 0), (2, 1)]);
     }
 
     #[test]
@@ -201,7 +227,7 @@ mod tests {
                 joints: [0, 0, 1, 2, 4].iter().enumerate().map(joint).collect(),
                 sites: felt.iter().map(site).collect(),
             };
-            agent.tree()
+            agent.truth().tree
         };
         assert_eq!(tree(&[0, 1, 2, 3, 4, 5]), [(1, 0), (2, 0), (3, 1), (4, 2), (5, 4)]);
         assert_eq!(tree(&[0, 3, 4]), [(3, 0), (4, 0)]);

@@ -213,7 +213,7 @@ mod tests {
             let found = joints(&tactile, &known(&agent), None, &mut stream(1, 1, "co-motion", 0));
             assert_eq!(
                 edges(&found),
-                undirected(agent.tree()),
+                undirected(agent.truth().tree),
                 "{morphology:?}, p = {coordination}: {found:?}"
             );
             let sum: f64 = found.pairs.iter().map(|pair| pair.support).sum();

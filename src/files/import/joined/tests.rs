@@ -137,7 +137,7 @@ fn between_places_far_apart_is_a_ball_without_skin() {
     // In truth the ball is no part, since nothing is felt on it.
     let file =
         crate::files::body::BodyFile { parts, skin: Some(Options::default().skin), ..Default::default() };
-    assert_eq!(file.body().unwrap().agent.tree(), [(2, 0)]);
+    assert_eq!(file.body().unwrap().agent.truth().tree, [(2, 0)]);
 }
 
 #[test]

@@ -89,7 +89,7 @@ fn bones_become_capsules_and_channels_joints() {
     );
     let body = imported.file.body().unwrap();
     assert_eq!((body.agent.sites.len(), body.agent.truth().parts()), (4 * 7, 3));
-    assert_eq!(body.agent.tree(), [(1, 0), (2, 0)]);
+    assert_eq!(body.agent.truth().tree, [(1, 0), (2, 0)]);
 }
 
 #[test]
