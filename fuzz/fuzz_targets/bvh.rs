@@ -6,7 +6,7 @@ use bodyschema::files::body::{SkinEntry, read_body, write_body};
 use bodyschema::files::bvh::read_bvh;
 use bodyschema::files::import::{Bones, body_of_skeleton};
 use bodyschema::stages::sense::{Sense, sense};
-use bodyschema::stages::simulate::recorded::{Attached, longest_stretch, play, samples, unmoved};
+use bodyschema::stages::simulate::recorded::{Attached, longest_stretch, play, samples, still_on};
 use bodyschema_fuzz::{accepted, file, folder};
 use libfuzzer_sys::fuzz_target;
 
@@ -40,7 +40,7 @@ fuzz_target!(|data: &[u8]| {
     let finite = |number: f64| number.is_finite();
     assert!(trajectory.poses.iter().flat_map(|pose| pose.position).all(finite));
     assert!(trajectory.angles.iter().flatten().copied().all(finite));
-    assert_eq!(unmoved(&body.agent, &trajectory).len(), body.agent.joints.len());
+    assert_eq!(still_on(&body.agent, &trajectory).len(), body.agent.joints.len());
     let tactile = sense(&body.agent, &trajectory, &Sense { interval, fluid_density: 1010.0, threshold: 0.0 });
     assert!(tactile.pressures.iter().all(|pressure| *pressure >= 0.0));
 });

@@ -21,8 +21,9 @@ use crate::numerics::rng::stream;
 use crate::recording::Recording;
 use crate::report::estimated::page;
 use crate::settings::Base;
-use crate::stages::evaluate::score;
+use crate::stages::evaluate::{joins, score};
 use crate::stages::rigid_parts::MIN_SENSORS;
+use crate::stages::tree::Truth;
 use crate::stages::usable::Fault;
 use crate::tasks::progress::progress;
 
@@ -91,6 +92,30 @@ struct Summary {
     parts: usize,
     seed: u64,
     revision: &'static str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    truth: Option<AgainstTruth>,
+}
+
+/// How parts and tree compare with the truth.
+#[derive(Serialize)]
+struct AgainstTruth {
+    parts: usize,
+    adjusted_rand_index: f64,
+    joints_right: usize,
+    tree_right: bool,
+}
+
+impl AgainstTruth {
+    fn new(found: &estimate::Estimate, truth: &Truth) -> Self {
+        let (labels, tree) = (&found.parts.labels, &found.joints.tree);
+        let score = score(labels, tree, truth, 1.0);
+        Self {
+            parts: truth.parts(),
+            adjusted_rand_index: score.ari,
+            joints_right: tree.iter().filter(|edge| joins(labels, edge, truth)).count(),
+            tree_right: score.tree_correct,
+        }
+    }
 }
 
 impl Estimate {
@@ -126,7 +151,8 @@ impl Estimate {
         let found = estimate(&recording, &settings.quantise, &mut rng, &|| bar.inc(1))?;
         bar.finish_and_clear();
         let shows_tree = self.force || found.fit.verdict != Verdict::DoesNotFit;
-        let summary = write(out, &found, &recording, seed, shows_tree)?;
+        let against = truth.as_ref().map(|truth| AgainstTruth::new(&found, &recording.truth(truth)));
+        let summary = write(out, &found, &recording, seed, shows_tree, against)?;
         say(found.fit.to_string())?;
         if !shows_tree {
             say(format!(
@@ -174,6 +200,7 @@ fn write(
     recording: &Recording,
     seed: u64,
     shows_tree: bool,
+    truth: Option<AgainstTruth>,
 ) -> Result<Summary> {
     let Recording { tactile, sensors, dropped, lost_samples, noisy, signed, .. } = recording;
     let parts = sensors.iter().enumerate().map(|(at, &sensor)| {
@@ -206,6 +233,7 @@ fn write(
         parts: found.joints.ranks.len(),
         seed,
         revision: env!("BODYSCHEMA_REVISION"),
+        truth,
     };
     write_text(&out.join("summary.json"), &serde_json::to_string_pretty(&summary)?)?;
     Ok(summary)

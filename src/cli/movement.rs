@@ -14,7 +14,7 @@ use crate::settings::{MAX_PRESSURES, MAX_SAMPLES};
 use crate::stages::agent::Freedom;
 use crate::stages::simulate::Trajectory;
 use crate::stages::simulate::recorded::{
-    Attached, RecordedMovement, Stretch, longest_stretch, play, samples, unmoved,
+    Attached, RecordedMovement, Stretch, longest_stretch, play, samples, still_on,
 };
 
 /// Share of frames that repeat the one before from which on a note says so.
@@ -39,7 +39,7 @@ pub(super) struct Recorded {
 
 /// A body and how it moved.
 pub(super) struct Played {
-    /// The body. Joints that never moved are fixed.
+    /// The body. Parts that never moved against each other are fixed to each other.
     pub body: NamedBody,
     /// Its poses.
     pub trajectory: Trajectory,
@@ -121,7 +121,7 @@ impl Recorded {
             ));
         }
         notes.extend(repeated(&movement));
-        notes.extend(fix_unmoved(&mut body, &trajectory));
+        notes.extend(fix_still(&mut body, &trajectory));
         let apart = trajectory.resolution.anchor_separation;
         if apart > APART {
             notes.push(format!(
@@ -163,18 +163,17 @@ fn repeated(movement: &RecordedMovement) -> Option<String> {
         .then(|| format!("{:.0} % of the frames repeat the one before, where nothing is felt", 100.0 * share))
 }
 
-/// Fixes joints that never moved, and says which.
-fn fix_unmoved(body: &mut NamedBody, trajectory: &Trajectory) -> Option<String> {
-    let still = unmoved(&body.agent, trajectory);
+/// Fixes parts to each other that never move against each other, and says which.
+fn fix_still(body: &mut NamedBody, trajectory: &Trajectory) -> Option<String> {
+    let on = still_on(&body.agent, trajectory);
     let mut fixed = Vec::new();
-    for (joint, _) in body.agent.joints.iter_mut().zip(still).filter(|(_, still)| *still) {
-        if joint.freedom != Freedom::Fixed {
-            joint.freedom = Freedom::Fixed;
-            fixed.push(format!("{} on {}", body.names[joint.child], body.names[joint.parent]));
-        }
+    for (joint, on) in body.agent.joints.iter_mut().zip(on) {
+        let Some(on) = on.filter(|_| joint.freedom != Freedom::Fixed) else { continue };
+        (joint.parent, joint.freedom) = (on, Freedom::Fixed);
+        fixed.push(format!("{} on {}", body.names[joint.child], body.names[on]));
     }
     let names = names(fixed.iter().map(String::as_str))?;
     Some(format!(
-        "joints that never move make their parts one in truth, since touch cannot tell them apart {names}"
+        "parts that never move against each other are one in truth, since touch cannot tell them apart {names}"
     ))
 }

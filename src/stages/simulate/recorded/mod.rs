@@ -13,5 +13,5 @@ mod skeleton;
 
 pub use self::attach::{Attached, Misfit};
 pub use self::jumps::{Stretch, longest_stretch};
-pub use self::play::{play, samples, unmoved};
+pub use self::play::{play, samples, still_on};
 pub use self::skeleton::{Channel, RecordedJoint, RecordedMovement};

@@ -101,11 +101,12 @@ fn separation(agent: &Agent, attached: &Attached, placed: &[Isometry3<f64>]) -> 
     agent.joints.iter().map(apart).fold(0.0, f64::max)
 }
 
-/// Whether the parts of each joint never move against each other in a trajectory.
-pub fn unmoved(agent: &Agent, trajectory: &Trajectory) -> Vec<bool> {
+/// For each joint, the part that its child never moves against in a trajectory, if there is one: that which carries it, or else an
+/// earlier one that the same part carries, such as the other shoulder.
+pub fn still_on(agent: &Agent, trajectory: &Trajectory) -> Vec<Option<usize>> {
     let all = || trajectory.poses.chunks(trajectory.parts);
-    let is_still = |joint: &Joint| {
-        let mut relative = all().map(|poses| relative(&poses[joint.parent], &poses[joint.child]));
+    let is_still = |on: usize, part: usize| {
+        let mut relative = all().map(|poses| relative(&poses[on], &poses[part]));
         let first = relative.next();
         first.is_none_or(|first| {
             relative.all(|now| {
@@ -114,7 +115,12 @@ pub fn unmoved(agent: &Agent, trajectory: &Trajectory) -> Vec<bool> {
             })
         })
     };
-    agent.joints.iter().map(is_still).collect()
+    let on = |(at, joint): (usize, &Joint)| {
+        let earlier = agent.joints[..at].iter().filter(|other| other.parent == joint.parent);
+        let mut candidates = std::iter::once(joint.parent).chain(earlier.map(|other| other.child));
+        candidates.find(|&on| is_still(on, joint.child))
+    };
+    agent.joints.iter().enumerate().map(on).collect()
 }
 
 /// The pose of a part in the frame of another.

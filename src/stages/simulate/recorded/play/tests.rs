@@ -124,14 +124,29 @@ fn joints_hold_and_angles_are_those_of_the_recording() {
         let expected = -0.9 * (PI * sample as f64 * FRAME).sin();
         assert!(angles[2] - expected < 1e-12 && angles[..2] == [0.0; 2], "{sample}: {angles:?}");
     }
-    assert_eq!(unmoved(&agent, &trajectory), [false]);
+    assert_eq!(still_on(&agent, &trajectory), [None]);
     // The same bits on one thread.
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
     let alone = pool.install(|| play(&agent, &attached, &movement, &(0..401), FRAME, 400));
     assert_eq!(alone, trajectory);
     let still =
         play(&agent, &attached, &recorded(&[[0.0, 25.0], [7.0, 25.0], [9.0, 25.0]]), &(0..3), 0.004, 5);
-    assert_eq!(unmoved(&agent, &still), [true]);
+    assert_eq!(still_on(&agent, &still), [Some(0)]);
+}
+
+#[test]
+fn what_moves_alike_on_one_part_never_moves_against_each_other() {
+    let (mut agent, names) = body();
+    let movement = pendulum();
+    let attached = Attached::new(&agent, &names, &movement, None).unwrap();
+    let mut trajectory = play(&agent, &attached, &movement, &(0..101), FRAME, 100);
+    // A second arm that moves as the first does.
+    let arm = agent.parts[1].clone();
+    agent.parts.push(arm);
+    agent.joints.push(Joint { child: 2, ..agent.joints[0].clone() });
+    trajectory.poses = trajectory.poses.chunks(2).flat_map(|own| [own[0], own[1], own[1]]).collect();
+    trajectory.parts = 3;
+    assert_eq!(still_on(&agent, &trajectory), [None, Some(1)]);
 }
 
 #[test]
