@@ -105,6 +105,8 @@ def page(rows, design):
         cells = [row["recording"], row["use"], size, row["fit"], row["true_parts"], row["parts"], row["ari"], joints, tree]
         lines.append("| " + " | ".join(str(cell) for cell in cells) + " |")
     for what, own in [("all", rows), ("held out", [row for row in rows if row["use"] == "held out"])]:
+        if not own:
+            continue
         mean = sum(float(row["ari"]) for row in own) / len(own)
         right = sum(row["tree_right"] == "true" for row in own)
         lines += ["", f"Mean of the adjusted Rand index, {what}: {mean:.3f} (n = {len(own)}); trees right: {right} of {len(own)}."]
