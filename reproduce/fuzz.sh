@@ -23,7 +23,7 @@ cargo +nightly fuzz build >"$files/log" 2>&1 || {
     tail -n 40 "$files/log"
     exit 2
 }
-for target in npy tables settings plot verify body bvh mesh; do
+for target in npy touch tables settings plot verify body bvh mesh; do
     echo "$target, $seconds s"
     mkdir -p "fuzz/corpus/$target"
     # A world in which the physics engine failed is never freed: a leak on purpose.

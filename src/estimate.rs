@@ -173,7 +173,7 @@ pub fn estimate(
 fn cause(tactile: &Tactile, is_noisy: bool) -> &'static str {
     let has_levels = |series: &[f32]| {
         let mut values: Vec<u32> = Vec::new();
-        series.iter().all(|pressure| {
+        series.iter().filter(|pressure| !pressure.is_nan()).all(|pressure| {
             let bits = pressure.to_bits();
             values.contains(&bits) || {
                 values.push(bits);
@@ -200,13 +200,19 @@ pub fn distances(tactile: &Tactile, levels: &Quantise) -> (Vec<usize>, Distances
     (sensors, distances)
 }
 
-/// Pressures of some sensors at some samples, made positive in the same order: each sensor's minus its smallest negative one.
+/// Pressures of some sensors at some samples, made positive in the same order: each sensor's minus its smallest negative one. Where
+/// one is missing, the one before: the distances only make a picture.
 fn excerpt(tactile: &Tactile, sensors: &[usize]) -> Tactile {
     let samples: Vec<usize> = stratified(tactile.samples, MAX_SAMPLES).collect();
     let signed = is_signed(tactile);
     let series: Vec<&[f32]> = tactile.series().collect();
     let own = |&sensor: &usize| {
-        let own: Vec<f32> = samples.iter().map(|&t| series[sensor][t]).collect();
+        let mut last = 0.0;
+        let held = |pressure: f32| {
+            last = if pressure.is_nan() { last } else { pressure };
+            last
+        };
+        let own: Vec<f32> = samples.iter().map(|&t| series[sensor][t]).map(held).collect();
         let least = if signed { own.iter().copied().fold(0.0, f32::min) } else { 0.0 };
         own.into_iter().map(move |pressure| pressure - least)
     };

@@ -8,12 +8,13 @@ use crate::stages::noise::above_noise;
 use crate::stages::rigid_parts::is_signed;
 use crate::stages::sense::Tactile;
 use crate::stages::tree::Truth;
-use crate::stages::usable::{Fault, Usable, usable};
+use crate::stages::usable::{Fault, Missing, Usable, usable_with};
 
 /// A recording of sensors that tell something, at samples at which they do.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recording {
-    /// Pressures of these sensors at these samples; smoothed where a sensor has noise, with 0 where a pressure is within it.
+    /// Pressures of these sensors at these samples; smoothed where a sensor has noise, with 0 where a pressure is within it. NaN where
+    /// a value is missing.
     pub tactile: Tactile,
     /// The sensors, as they were counted before, rising.
     pub sensors: Vec<usize>,
@@ -23,6 +24,8 @@ pub struct Recording {
     pub samples: Vec<usize>,
     /// How many samples were left out, because most sensors have no value there.
     pub lost_samples: usize,
+    /// Values that are missing, which are not interpolated.
+    pub missing: Missing,
     /// How many sensors have noise.
     pub noisy: usize,
     /// Whether negative pressures are signal, not noise about 0.
@@ -31,12 +34,21 @@ pub struct Recording {
 
 impl Recording {
     /// Cleans a recording of M sensors: drops samples at which most sensors have no value, then sensors that are dead, constant or
-    /// not finite, and smooths the noisy ones of the others. It may drop all.
+    /// mostly missing, and smooths the noisy ones of the others. It may drop all. Infinite and saturated values count as missing.
     pub fn new(tactile: Tactile) -> Self {
-        let Usable { tactile, sensors, dropped, lost_samples, samples } = usable(tactile);
+        Self::of_usable(usable_with(tactile, false))
+    }
+
+    /// The same, where values at the end of a sensor's range are no sign of saturation, and count.
+    pub fn keeping_saturated(tactile: Tactile) -> Self {
+        Self::of_usable(usable_with(tactile, true))
+    }
+
+    fn of_usable(usable: Usable) -> Self {
+        let Usable { tactile, sensors, dropped, lost_samples, samples, missing } = usable;
         let (tactile, noisy) = above_noise(tactile);
         let signed = is_signed(&tactile);
-        Self { tactile, sensors, dropped, samples, lost_samples, noisy, signed }
+        Self { tactile, sensors, dropped, samples, lost_samples, missing, noisy, signed }
     }
 
     /// How many sensors there were.
@@ -61,12 +73,12 @@ mod tests {
 
     #[test]
     fn a_recording_knows_what_became_of_each_sensor_and_sample() {
-        // Sensor 1 is dead, sensor 2 has no value at one sample, and no sensor has one at sample 3.
+        // Sensor 1 is dead, sensor 2 has a value at one sample only, and no sensor has one at sample 3.
         let nan = f32::NAN;
         let pressures = [
             [1.0, 0.0, 2.0, nan, 3.0],
             [0.0, 0.0, 0.0, nan, 0.0],
-            [1.0, nan, 2.0, nan, 4.0],
+            [nan, nan, 2.0, nan, nan],
             [0.0, 5.0, 1.0, nan, 0.0],
         ];
         let recording = Recording::new(Tactile { samples: 5, pressures: pressures.concat() });

@@ -28,11 +28,12 @@ const ROOMS: [&str; 13] = [
 ];
 
 /// The stages in order: each imports only those before it, and `baselines` and `schema` never each other.
-const STAGES: [&str; 15] = [
+const STAGES: [&str; 16] = [
     "tree",
     "agent",
     "simulate",
     "sense",
+    "clock",
     "usable",
     "noise",
     "quantise",

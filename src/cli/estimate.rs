@@ -9,13 +9,13 @@ use clap::Args;
 use serde::Serialize;
 
 use super::estimate_report::Shown;
-use super::options::{SettingsAndSeed, TruthFiles, seconds};
+use super::options::{SettingsAndSeed, TruthFiles};
 use super::output::say;
-use super::tree::{self, refuse_truth, say_cleaned};
+use super::touch::TouchFile;
+use super::tree::{self, refuse_truth};
 use crate::analysis::statistics::mean;
 use crate::estimate::{self, Verdict, estimate};
 use crate::files::tables::{write_rows, write_rows_of};
-use crate::files::touch::read_touch;
 use crate::files::{prepare_folder, write_text};
 use crate::numerics::rng::stream;
 use crate::recording::Recording;
@@ -27,30 +27,18 @@ use crate::stages::tree::Truth;
 use crate::stages::usable::Fault;
 use crate::tasks::progress::progress;
 
-/// Estimates parts and tree of any body from touch alone, such as your own robot (not in the paper).
-///
-/// Reads pressures (T x M, any numbers) and writes into DIR: parts.csv (sensor,part,residual,next_part,next_residual), tree.csv
-/// (child,parent,support), edges.csv (part,other,correlation,support,in_tree), dropped.csv (sensor,fault: sensors that are
-/// dead, constant or not a number), summary.json and report.html, which shows parts, tree and touch.
-///
-/// A part is a rigid body: one rigid motion explains what all its sensors feel. Each sensor is assigned to the part with the
-/// smallest residual: residual is the share of residual variance of the sensor, next_residual that for the next best part.
-/// The fit comes first: good, doubtful or does not fit, by the share of sensors that a rigid motion explains. If it does not fit, no
-/// tree is shown or written without --force, and the exit status is 1.
-///
-/// Parts are joined as by `tree`: support is the bootstrap support of an edge, given the parts. Unless --settings says
-/// otherwise, pressures are quantised into eight levels for each sensor (reproduce/estimate.toml).
+/// Estimates parts and tree of any body from touch alone, such as your own robot (docs/own-data.md).
 #[derive(Args)]
+#[command(
+    after_help = "Example:\n  bodyschema estimate tactile.npy --out found    then open found/report.html"
+)]
 pub(super) struct Estimate {
-    /// Pressures: a .npy or .csv file with a row for each sample and a column for each sensor
-    tactile: PathBuf,
+    #[command(flatten)]
+    file: TouchFile,
     #[command(flatten)]
     common: SettingsAndSeed,
     #[command(flatten)]
     truth: TruthFiles,
-    /// Time between two samples, s; without it, the report counts samples
-    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
-    interval: Option<f64>,
     /// Show tree and report even if rigid parts do not explain the recording
     #[arg(long)]
     force: bool,
@@ -87,8 +75,12 @@ struct Summary {
     sensors: usize,
     dropped: usize,
     lost_samples: usize,
+    missing: usize,
+    infinite: usize,
+    saturated: usize,
     noisy: usize,
     signed: bool,
+    interval: Option<f64>,
     parts: usize,
     seed: u64,
     revision: &'static str,
@@ -122,27 +114,23 @@ impl Estimate {
     /// Runs the subcommand.
     pub(super) fn run(self) -> Result<ExitCode> {
         let settings = self.common.load_over(Base::ESTIMATE)?;
-        let (input, out, seed) = (&self.tactile, &self.out, settings.experiment.seed);
-        let in_file = || input.display().to_string();
-        let all = read_touch(input)?;
-        let count = all.sensors();
+        let (out, seed) = (&self.out, settings.experiment.seed);
+        let all = self.file.read()?;
+        let (name, interval, count) = (all.name.clone(), all.interval, all.tactile.sensors());
         let truth = self.truth.read(count)?;
-        let recording = Recording::new(all);
-        say_cleaned(input, &recording);
+        let recording = all.cleaned();
         // Before anything is written.
         ensure!(
             recording.sensors.len() >= MIN_SENSORS,
-            "{}: {} of {count} sensors feel anything usable, but estimating parts needs at least {MIN_SENSORS}; for known parts, use \
+            "{name}: {} of {count} sensors feel anything usable, but estimating parts needs at least {MIN_SENSORS}; for known parts, use \
              `bodyschema tree`",
-            in_file(),
             recording.sensors.len()
         );
         refuse_truth(out)?;
         prepare_folder(out)?;
         if let Some((first, fault)) = recording.dropped.first() {
             eprintln!(
-                "bodyschema: {}: {} of {count} sensors are left out (the first, {first}, is {fault}); see dropped.csv",
-                input.display(),
+                "bodyschema: {name}: {} of {count} sensors are left out (the first, {first}, is {fault}); see dropped.csv",
                 recording.dropped.len()
             );
         }
@@ -151,8 +139,8 @@ impl Estimate {
         let found = estimate(&recording, &settings.quantise, &mut rng, &|| bar.inc(1))?;
         bar.finish_and_clear();
         let shows_tree = self.force || found.fit.verdict != Verdict::DoesNotFit;
-        let against = truth.as_ref().map(|truth| AgainstTruth::new(&found, &recording.truth(truth)));
-        let summary = write(out, &found, &recording, seed, shows_tree, against)?;
+let against = truth.as_ref().map(|truth| AgainstTruth::new(&found, &recording.truth(truth)));
+        let summary = write(out, &found, &recording, (interval, seed), shows_tree, against)?;
         say(found.fit.to_string())?;
         if !shows_tree {
             say(format!(
@@ -161,13 +149,7 @@ impl Estimate {
             ))?;
             return Ok(ExitCode::from(NO_FIT));
         }
-        let shown = Shown {
-            name: in_file(),
-            interval: self.interval,
-            truth: truth.as_ref(),
-            of: settings.map.of,
-            seed,
-        };
+        let shown = Shown { name, interval, truth: truth.as_ref(), of: settings.map.of, seed };
         write_text(&out.join("report.html"), &page(&shown.estimated(&found, &recording)))?;
         say(format!(
             "{} parts of {} sensors over {} samples, in {}; open report.html there",
@@ -198,11 +180,11 @@ fn write(
     out: &Path,
     found: &estimate::Estimate,
     recording: &Recording,
-    seed: u64,
+    (interval, seed): (Option<f64>, u64),
     shows_tree: bool,
     truth: Option<AgainstTruth>,
 ) -> Result<Summary> {
-    let Recording { tactile, sensors, dropped, lost_samples, noisy, signed, .. } = recording;
+    let Recording { tactile, sensors, dropped, lost_samples, missing, noisy, signed, .. } = recording;
     let parts = sensors.iter().enumerate().map(|(at, &sensor)| {
         let (next_part, next_residual) = found.parts.alternatives[at].first().copied().unzip();
         let (part, residual) = (found.parts.labels[at], found.parts.residuals[at]);
@@ -212,9 +194,9 @@ fn write(
     let row = |(sensor, fault): &(usize, Fault)| DroppedRow { sensor: *sensor, fault: fault.to_string() };
     write_rows_of(&out.join("dropped.csv"), &["sensor", "fault"], dropped.iter().map(row))?;
     if shows_tree {
-        tree::write(out, &found.joints)?;
+        tree::write(out, &found.joints, &found.parts.labels)?;
     } else {
-        for name in ["tree.csv", "edges.csv", "report.html"] {
+        for name in tree::FILES.into_iter().chain(["report.html"]) {
             let file = out.join(name);
             if file.exists() {
                 fs::remove_file(&file).with_context(|| file.display().to_string())?;
@@ -228,8 +210,12 @@ fn write(
         sensors: sensors.len() + dropped.len(),
         dropped: dropped.len(),
         lost_samples: *lost_samples,
+        missing: missing.values,
+        infinite: missing.infinite,
+        saturated: missing.saturated,
         noisy: *noisy,
         signed: *signed,
+        interval,
         parts: found.joints.ranks.len(),
         seed,
         revision: env!("BODYSCHEMA_REVISION"),

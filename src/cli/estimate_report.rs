@@ -62,6 +62,7 @@ impl Shown<'_> {
     }
 
     fn facts(&self, recording: &Recording) -> Vec<(&'static str, String)> {
+        let missing = &recording.missing;
         let dropped = match recording.dropped.len() {
             0 => "none".to_owned(),
             many => format!("{many} of {} (dropped.csv says which and why)", recording.all_sensors()),
@@ -71,6 +72,9 @@ impl Shown<'_> {
             ("samples", recording.tactile.samples.to_string()),
             ("samples left out", recording.lost_samples.to_string()),
             ("sensors left out", dropped),
+            ("values missing of the others", missing.values.to_string()),
+            ("infinite values", missing.infinite.to_string()),
+            ("saturated values", missing.saturated.to_string()),
             ("noisy sensors, which are smoothed", recording.noisy.to_string()),
             ("seed", self.seed.to_string()),
             ("revision", env!("BODYSCHEMA_REVISION").to_owned()),

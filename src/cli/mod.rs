@@ -13,6 +13,7 @@ mod results;
 mod simulate;
 mod stages;
 mod study;
+mod touch;
 mod tree;
 mod view;
 

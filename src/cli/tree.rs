@@ -9,34 +9,28 @@ use serde::Serialize;
 
 use super::options::{TruthFiles, paper, with_default};
 use super::output::say;
-use crate::files::prepare_folder;
+use super::touch::TouchFile;
+use crate::files::graph::{Link, Node, dot, graphml};
 use crate::files::tables::{read_parts, write_rows_of};
-use crate::files::touch::read_touch;
+use crate::files::{prepare_folder, write_text};
 use crate::numerics::partition::sizes;
 use crate::numerics::rng::stream;
-use crate::recording::Recording;
 use crate::report::text_tree::text_tree;
 use crate::stages::evaluate::{Score, score};
 use crate::stages::joints::{Joints, Pair, joints};
 use crate::stages::rigid_parts::MAX_RANK;
 use crate::stages::tree::Truth;
 
-/// Estimates how given parts are joined, from the speeds of their joints (not in the paper).
-///
-/// Reads pressures (T x M, any numbers) and the part of each sensor, and writes into DIR: tree.csv
-/// (child,parent,support) and edges.csv (part,other,correlation,support,in_tree: all pairs of parts). Both parts of a joint
-/// feel its speed: correlation, 0 to 1, is the canonical correlation of that speed between two parts, and the tree is the
-/// spanning tree of greatest correlation. Support is the bootstrap support of an edge, given the parts: the share of trees
-/// over resampled blocks of time that have it.
+/// Estimates how given parts are joined, from the speeds of their joints (docs/estimate.md).
 #[derive(Args)]
+#[command(after_help = "Example:\n  bodyschema tree tactile.npy --parts parts.csv --out joined")]
 pub(super) struct Tree {
-    /// Pressures: a .npy or .csv file with a row for each sample and a column for each sensor
-    tactile: PathBuf,
-    /// Part of each sensor: a .csv file with columns sensor,part, such as parts.csv of infer; sensors without a row are
-    /// left out
+    #[command(flatten)]
+    file: TouchFile,
+    /// Part of each sensor: a .csv file with columns sensor,part; a sensor without a row is left out
     #[arg(long, value_name = "FILE")]
     parts: PathBuf,
-    /// Rank of the motion subspace of each part, 1 to 6 [default: chosen for each part from the data]
+    /// Rank of the motion of each part, 1 to 6 [default: chosen from the data]
     #[arg(long, value_name = "K", value_parser = clap::value_parser!(u64).range(1..=MAX_RANK as u64))]
     components: Option<u64>,
     #[arg(long, value_name = "S", help = with_default("Master seed of all random numbers", paper().experiment.seed))]
@@ -67,25 +61,24 @@ struct EdgeRow {
 impl Tree {
     /// Runs the subcommand.
     pub(super) fn run(self) -> Result<ExitCode> {
-        let (input, out) = (&self.tactile, &self.out);
-        let all = read_touch(input)?;
-        let count = all.sensors();
+        let out = &self.out;
+        let all = self.file.read()?;
+        let (name, count) = (all.name.clone(), all.tactile.sensors());
         let parts = read_parts(&self.parts, count)?;
         let truth = self.truth.read(count)?;
-        let recording = Recording::new(all);
-        say_cleaned(input, &recording);
+        let recording = all.cleaned();
         for (sensor, fault) in recording.dropped.iter().filter(|(sensor, _)| parts[*sensor].is_some()) {
-            eprintln!("bodyschema: {}: sensor {sensor} is {fault}, and is left out", input.display());
+            eprintln!("bodyschema: {name}: sensor {sensor} is {fault}, and is left out");
         }
         let own = recording.of_sensors(&parts);
         let labels: Vec<usize> = own.iter().copied().flatten().collect();
-        ensure!(!labels.is_empty(), "{}: no sensor that has a part feels anything", input.display());
+        ensure!(!labels.is_empty(), "{name}: no sensor that has a part feels anything");
         refuse_truth(out)?;
         prepare_folder(out)?;
         let mut rng = stream(self.seed.unwrap_or(paper().experiment.seed), 1, "co-motion", 0);
         let rank = self.components.map(|k| k as usize);
         let found = joints(&recording.tactile, &own, rank, &mut rng);
-        write(out, &found)?;
+        write(out, &found, &labels)?;
         print(&found, &labels)?;
         if let Some(truth) = truth {
             let all = recording.truth(&truth);
@@ -95,22 +88,6 @@ impl Tree {
             print_score(&score(&labels, &found.tree, &truth, 1.0))?;
         }
         Ok(ExitCode::SUCCESS)
-    }
-}
-
-/// Says what cleaning changed.
-pub(super) fn say_cleaned(input: &Path, Recording { tactile, lost_samples, noisy, .. }: &Recording) {
-    let name = input.display();
-    if *lost_samples > 0 {
-        eprintln!(
-            "bodyschema: {name}: {lost_samples} samples are left out, because most sensors have no value there"
-        );
-    }
-    if *noisy > 0 {
-        eprintln!(
-            "bodyschema: {name}: {noisy} of {} sensors are noisy; they are smoothed, and pressures within the noise count as no touch",
-            tactile.sensors()
-        );
     }
 }
 
@@ -135,8 +112,22 @@ pub(super) fn in_words(score: &Score) -> String {
     format!("adjusted Rand index {:.3}, true tree {recovered}", score.ari)
 }
 
-/// Writes tree.csv and edges.csv.
-pub(super) fn write(out: &Path, found: &Joints) -> Result<()> {
+/// The files that [`write`] writes.
+pub(super) const FILES: [&str; 4] = ["tree.csv", "tree.dot", "tree.graphml", "edges.csv"];
+
+/// Writes the tree, also as graph programs read it, and all pairs of parts. In: how parts are joined, and the part of each sensor.
+pub(super) fn write(out: &Path, found: &Joints, labels: &[usize]) -> Result<()> {
+    let sizes = sizes(labels);
+    let node = |(part, rank): (&usize, &usize)| Node { part: *part, sensors: sizes[part], rank: *rank };
+    let nodes: Vec<Node> = found.ranks.iter().map(node).collect();
+    let link = |pair: &Pair| Link {
+        parts: [pair.part, pair.other],
+        correlation: pair.correlation,
+        support: pair.support,
+    };
+    let links: Vec<Link> = found.pairs.iter().filter(|pair| pair.in_tree).map(link).collect();
+    write_text(&out.join("tree.dot"), &dot(&nodes, &links))?;
+    write_text(&out.join("tree.graphml"), &graphml(&nodes, &links))?;
     let edges = found.tree.iter().map(|edge| TreeRow {
         child: edge.child,
         parent: edge.parent,

@@ -8,6 +8,7 @@ use clap::Args;
 
 use super::options::SettingsFile;
 use super::output::say;
+use super::touch::{FormatOptions, say_guesses};
 use crate::files::write_text;
 use crate::report::viewer::folder::{Sources, read};
 use crate::report::viewer::page::page;
@@ -22,9 +23,11 @@ pub(super) struct View {
     /// Folder of a simulation, an estimate, or data of your own
     #[arg(value_name = "DIR")]
     folder: PathBuf,
-    /// Pressures, if they are not in DIR: a .npy or .csv file with a row for each sample and a column for each sensor
+    /// Pressures, if they are not in DIR, as `estimate` reads them
     #[arg(long, value_name = "FILE")]
     tactile: Option<PathBuf>,
+    #[command(flatten)]
+    format: FormatOptions,
     /// Folder of an estimate of this body, as `estimate` or `infer` wrote it: parts.csv and tree.csv, or posterior samples, of which
     /// the most probable one is shown
     #[arg(long, value_name = "DIR")]
@@ -40,12 +43,15 @@ impl View {
     /// Runs the subcommand.
     pub(super) fn run(self) -> Result<ExitCode> {
         let settings = self.file.load(false)?;
+        let format = self.format.format();
         let sources = Sources {
             folder: &self.folder,
             tactile: self.tactile.as_deref(),
+            format: &format,
             estimate: self.estimate.as_deref(),
         };
-        let scene = read(&sources, &settings)?;
+        let (scene, guesses) = read(&sources, &settings)?;
+        say_guesses(&self.folder.display().to_string(), &guesses);
         let out = self.out.unwrap_or_else(|| self.folder.join("view.html"));
         let title = format!("Body schema of {}", self.folder.display());
         write_text(&out, &page(&title, &[scene.data()]))?;

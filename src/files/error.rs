@@ -23,6 +23,8 @@ impl FileError {
 pub fn one_line(message: &str) -> String {
     const MAX_CHARACTERS: usize = 300;
     let line = message.split_whitespace().collect::<Vec<_>>().join(" ");
+    // A terminal would obey them.
+    let line = line.replace(char::is_control, "\u{fffd}");
     match line.char_indices().nth(MAX_CHARACTERS) {
         Some((end, _)) => format!("{} …", &line[..end]),
         None => line,

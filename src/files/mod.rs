@@ -1,9 +1,11 @@
 //! Read and write files that NumPy and a spreadsheet open, and the folders of finished runs.
 
+mod array;
 pub mod body;
 pub mod bvh;
 pub(crate) mod checkpoint;
 mod error;
+pub mod graph;
 mod hash;
 pub mod import;
 pub(crate) mod manifest;

@@ -8,7 +8,7 @@ use npyz::Order;
 use serde::{Deserialize, Serialize};
 
 use super::error::FileError;
-use super::npy::{Matrix, write};
+use super::npy::{read_matrix, write};
 use super::tables::{read_rows, write_rows};
 use crate::stages::agent::{Agent, Shape, Site, Vector3};
 use crate::stages::simulate::{Pose, Trajectory};
@@ -118,7 +118,7 @@ impl MovedBody {
             Ok(site)
         };
         let sites = read_rows(&sensors)?.into_iter().enumerate().map(site).collect::<Result<_, _>>()?;
-        let matrix = Matrix::read(&poses, Order::C, |value| {
+        let matrix = read_matrix(&poses, Order::C, |value| {
             if value.is_finite() { Ok(value as f32) } else { Err("a pose must be finite numbers") }
         })?;
         if matrix.columns != NUMBERS * shapes.len() {

@@ -15,6 +15,7 @@
 //!
 //! | module | in → out |
 //! |---|---|
+//! | [`clock`] | a column → whether it holds times, and their interval |
 //! | [`usable`] | pressures → those of the sensors and samples that tell something |
 //! | [`noise`] | pressures → smoothed, with 0 where there is no touch |
 //! | [`rigid_parts`] | pressures → [`RigidParts`](rigid_parts::RigidParts): the part of each sensor, by motion subspaces |
@@ -29,6 +30,7 @@
 pub mod agent;
 pub mod baselines;
 pub mod body_map;
+pub mod clock;
 pub mod distance;
 pub mod evaluate;
 pub mod joints;

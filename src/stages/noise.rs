@@ -1,6 +1,6 @@
 //! Take noise off the pressures of sensors, and count as no touch what it explains.
 //!
-//! In: [`Tactile`] pressures of sensors that all change. Out: the same, smoothed where a sensor has noise, with 0 where a
+//! In: [`Tactile`] pressures of sensors that all change, NaN where one is missing. Out: the same, smoothed where a sensor has noise, with 0 where a
 //! pressure is within it.
 //!
 //! Noise that is new at each sample shows in the second differences of a sensor, p(t−1) − 2p(t) + p(t+1), by four marks, and all of
@@ -22,11 +22,13 @@
 
 mod shared;
 mod smooth;
+mod smooth_gaps;
 
 use rayon::prelude::*;
 
 use self::shared::Signs;
 use self::smooth::smooth;
+use self::smooth_gaps::smooth_gaps;
 use crate::stages::sense::Tactile;
 
 /// Largest ratio of the median to the lower quartile of absolute differences that is noise.
@@ -58,7 +60,11 @@ pub fn above_noise(mut tactile: Tactile) -> (Tactile, usize) {
     }
     let cut = |(series, size): (&mut [f32], &Option<f32>)| {
         let Some(size) = size else { return 0 };
-        smooth(series, *size);
+        if series.iter().any(|pressure| pressure.is_nan()) {
+            smooth_gaps(series, *size);
+        } else {
+            smooth(series, *size);
+        }
         1
     };
     let noisy = tactile.pressures.par_chunks_exact_mut(samples).zip(&sizes).map(cut).sum();
@@ -67,16 +73,18 @@ pub fn above_noise(mut tactile: Tactile) -> (Tactile, usize) {
 
 /// The median absolute second difference of a series with noise; `None` if it has none.
 fn size(series: &[f32]) -> Option<f32> {
+    // NaN next to a gap.
     let differences: Vec<f32> = series.windows(3).map(|three| three[0] - 2.0 * three[1] + three[2]).collect();
+    let known = differences.iter().filter(|difference| !difference.is_nan()).count();
     let mut sizes: Vec<f32> =
         differences.iter().map(|difference| difference.abs()).filter(|size| *size > 0.0).collect();
-    if sizes.len() < MIN_DIFFERENCES || (sizes.len() as f64) < MIN_NONZERO_SHARE * differences.len() as f64 {
+    if sizes.len() < MIN_DIFFERENCES || (sizes.len() as f64) < MIN_NONZERO_SHARE * known as f64 {
         return None;
     }
     let (pairs, alike) = differences
         .windows(4)
         .map(|four| four[0] * four[3])
-        .filter(|product| *product != 0.0)
+        .filter(|product| product.abs() > 0.0)
         .fold((0, 0), |(pairs, alike), product| (pairs + 1, alike + usize::from(product > 0.0)));
     if (alike as f64 / f64::from(pairs) - 0.5).abs() > MAX_SIGN_IMBALANCE {
         return None;
@@ -85,9 +93,9 @@ fn size(series: &[f32]) -> Option<f32> {
     let (below, &mut size, _) = sizes.select_nth_unstable_by(middle, f32::total_cmp);
     let quartile = *below.select_nth_unstable_by(middle / 2, f32::total_cmp).1;
     let left = series.iter().filter(|pressure| pressure.abs() >= NOISE_LIMIT * size).count();
-    (f64::from(size) < MAX_MEDIAN_TO_QUARTILE * f64::from(quartile)
-        && left * MIN_SIGNAL_ONE_IN >= series.len())
-    .then_some(size)
+    let all = series.iter().filter(|pressure| !pressure.is_nan()).count();
+    (f64::from(size) < MAX_MEDIAN_TO_QUARTILE * f64::from(quartile) && left * MIN_SIGNAL_ONE_IN >= all)
+        .then_some(size)
 }
 
 #[cfg(test)]

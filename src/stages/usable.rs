@@ -1,17 +1,24 @@
-//! Drop samples at which most sensors are missing, and sensors that are missing, dead or constant.
+//! Count what is missing, and drop samples at which most sensors are missing, and sensors that are mostly missing, dead or constant.
 //!
-//! In: [`Tactile`] pressures as a robot has them. Out: [`Usable`] pressures, and why each other sensor was left out.
+//! In: [`Tactile`] pressures as a robot has them. Out: [`Usable`] pressures, and why each other sensor was left out. A value that is
+//! infinite or saturated is missing. What is missing of the other sensors stays missing: NaN. It is not interpolated.
+
+mod saturation;
 
 use std::fmt::{self, Display, Formatter};
 
 use rayon::prelude::*;
 
+use self::saturation::without_saturated;
 use crate::stages::sense::Tactile;
+
+/// Largest share of its values that a sensor may lack.
+const MOST_MISSING: f64 = 0.4;
 
 /// Why a sensor is dropped.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Fault {
-    /// A value is no finite number.
+    /// Too many of its values are missing.
     NotFinite,
     /// It is 0 throughout.
     Dead,
@@ -22,17 +29,30 @@ pub enum Fault {
 impl Display for Fault {
     fn fmt(&self, formatter: &mut Formatter<'_>) -> fmt::Result {
         formatter.write_str(match self {
-            Self::NotFinite => "not a number",
+            Self::NotFinite => "missing",
             Self::Dead => "dead",
             Self::Constant => "constant",
         })
     }
 }
 
-/// A recording without missing values, and what was dropped.
+/// Values that are missing.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Missing {
+    /// Of the sensors and samples that are used.
+    pub values: usize,
+    /// Infinite values of the whole recording.
+    pub infinite: usize,
+    /// Saturated values of the whole recording.
+    pub saturated: usize,
+    /// Sensors that have any of these.
+    pub saturated_sensors: usize,
+}
+
+/// A recording of sensors that tell something, and what was dropped.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Usable {
-    /// Their pressures.
+    /// Their pressures, NaN where one is missing.
     pub tactile: Tactile,
     /// The sensors that they are of, rising.
     pub sensors: Vec<usize>,
@@ -42,41 +62,83 @@ pub struct Usable {
     pub lost_samples: usize,
     /// The other samples, rising.
     pub samples: Vec<usize>,
+    /// What is missing.
+    pub missing: Missing,
 }
 
-/// Drops samples at which most sensors are missing, and then sensors that are missing, dead or constant.
+/// Drops samples at which most sensors are missing, and then sensors that are mostly missing, dead or constant.
 pub fn usable(tactile: Tactile) -> Usable {
+    usable_with(tactile, false)
+}
+
+/// The same, where values at the end of a sensor's range count if they are to be kept.
+pub fn usable_with(mut tactile: Tactile, keeps_saturated: bool) -> Usable {
+    let infinite = without_infinite(&mut tactile);
+    let saturated = if keeps_saturated { Vec::new() } else { without_saturated(&mut tactile) };
     let all = tactile.samples;
     let (tactile, samples) = without_lost_samples(tactile);
     let lost_samples = all - samples.len();
-    let fault = |series: &[f32]| {
-        if series.iter().any(|pressure| !pressure.is_finite()) {
-            Some(Fault::NotFinite)
-        } else if series.iter().all(|pressure| *pressure == 0.0) {
-            Some(Fault::Dead)
-        } else {
-            series.iter().all(|pressure| *pressure == series[0]).then_some(Fault::Constant)
-        }
+    let of_sensors: Vec<(usize, Option<Fault>)> =
+        tactile.pressures.par_chunks_exact(tactile.samples).map(gaps_and_fault).collect();
+    let faults = || of_sensors.iter().map(|(_, fault)| *fault).enumerate();
+    let dropped = faults().filter_map(|(sensor, fault)| Some((sensor, fault?))).collect();
+    let sensors: Vec<usize> =
+        faults().filter(|(_, fault)| fault.is_none()).map(|(sensor, _)| sensor).collect();
+    let missing = Missing {
+        values: sensors.iter().map(|&sensor| of_sensors[sensor].0).sum(),
+        infinite,
+        saturated: saturated.iter().sum(),
+        saturated_sensors: saturated.iter().filter(|count| **count > 0).count(),
     };
-    let faults: Vec<Option<Fault>> = tactile.pressures.par_chunks_exact(tactile.samples).map(fault).collect();
-    let dropped = faults.iter().enumerate().filter_map(|(sensor, fault)| Some((sensor, (*fault)?))).collect();
-    let sensors: Vec<usize> = (0..faults.len()).filter(|sensor| faults[*sensor].is_none()).collect();
-    Usable { tactile: only(tactile, &sensors), sensors, dropped, lost_samples, samples }
+    Usable { tactile: only(tactile, &sensors), sensors, dropped, lost_samples, samples, missing }
+}
+
+/// Replaces infinite values by NaN; how many they are.
+fn without_infinite(tactile: &mut Tactile) -> usize {
+    let samples = tactile.samples;
+    let own = |series: &mut [f32]| {
+        let infinite = series.iter_mut().filter(|pressure| pressure.is_infinite());
+        infinite.map(|pressure| *pressure = f32::NAN).count()
+    };
+    tactile.pressures.par_chunks_exact_mut(samples).map(own).sum()
+}
+
+/// How many values of a sensor are missing, and what is the matter with it.
+fn gaps_and_fault(series: &[f32]) -> (usize, Option<Fault>) {
+    let gaps = gaps(series);
+    let known = || series.iter().filter(|pressure| !pressure.is_nan());
+    let fault = if is_missing(gaps, series.len()) {
+        Some(Fault::NotFinite)
+    } else if known().all(|pressure| *pressure == 0.0) {
+        Some(Fault::Dead)
+    } else {
+        let first = known().next();
+        known().all(|pressure| Some(pressure) == first).then_some(Fault::Constant)
+    };
+    (gaps, fault)
+}
+
+fn gaps(series: &[f32]) -> usize {
+    series.iter().filter(|pressure| pressure.is_nan()).count()
+}
+
+/// Whether a sensor with so many gaps tells too little.
+fn is_missing(gaps: usize, samples: usize) -> bool {
+    gaps as f64 > MOST_MISSING * samples as f64
 }
 
 /// The pressures without samples at which more than half of the sensors are missing, such as a lost frame, and the samples that are
-/// kept. Sensors that are missing in at least half of the samples are ignored in this count if that keeps more complete values: broken
+/// kept. Sensors that are missing in at least half of the samples are ignored in this count if that keeps more values: broken
 /// sensors should not cost samples, and a slow skin, which is missing in most frames of a log, should not cost sensors. If no sample
 /// would be kept, none is dropped.
 fn without_lost_samples(mut tactile: Tactile) -> (Tactile, Vec<usize>) {
     let (samples, sensors) = (tactile.samples, tactile.sensors());
-    let gaps = |series: &[f32]| series.iter().filter(|pressure| !pressure.is_finite()).count();
     let gaps: Vec<usize> = tactile.pressures.par_chunks_exact(samples).map(gaps).collect();
     let mut kept = samples_with_quorum(&tactile, &gaps, samples);
     let half = samples.div_ceil(2) - 1;
     if gaps.iter().any(|gaps| *gaps > half) {
         let other = samples_with_quorum(&tactile, &gaps, half);
-        if complete_values(&tactile, &other) > complete_values(&tactile, &kept) {
+        if usable_values(&tactile, &other) > usable_values(&tactile, &kept) {
             kept = other;
         }
     }
@@ -102,16 +164,16 @@ fn samples_with_quorum(tactile: &Tactile, gaps: &[usize], most: usize) -> Vec<us
         missing
             .iter_mut()
             .zip(series)
-            .for_each(|(missing, pressure)| *missing += usize::from(!pressure.is_finite()));
+            .for_each(|(missing, pressure)| *missing += usize::from(pressure.is_nan()));
     }
     let sensors = gaps.iter().filter(|gaps| **gaps <= most).count();
     (0..tactile.samples).filter(|t| 2 * missing[*t] <= sensors).collect()
 }
 
-/// Number of values of the sensors that have one at all of these samples.
-fn complete_values(tactile: &Tactile, samples: &[usize]) -> usize {
-    let is_whole = |series: &&[f32]| samples.iter().all(|t| series[*t].is_finite());
-    samples.len() * tactile.series().filter(is_whole).count()
+/// Samples times the sensors that are not mostly missing at these.
+fn usable_values(tactile: &Tactile, samples: &[usize]) -> usize {
+    let gaps = |series: &[f32]| samples.iter().filter(|t| series[**t].is_nan()).count();
+    samples.len() * tactile.series().filter(|series| !is_missing(gaps(series), samples.len())).count()
 }
 
 /// The pressures of some sensors, which rise. Nothing is copied to another place of the memory: it may be most of what there is.
@@ -133,6 +195,7 @@ mod tests {
         let pressures =
             vec![1.0, 2.0, f32::NAN, 3.0, 0.0, 0.0, 7.0, 7.0, 0.0, -1.0, f32::INFINITY, f32::INFINITY];
         let found = usable(Tactile { samples: 2, pressures });
+        assert_eq!(found.missing, Missing { infinite: 2, ..Missing::default() });
         assert_eq!(found.sensors, [0, 4]);
         assert_eq!(found.tactile.pressures, [1.0, 2.0, 0.0, -1.0]);
         let dropped = [(1, Fault::NotFinite), (2, Fault::Dead), (3, Fault::Constant), (5, Fault::NotFinite)];
@@ -145,9 +208,9 @@ mod tests {
         let pressures = vec![1.0, nan, 2.0, 3.0, 4.0, nan, 5.0, 6.0, nan, 1.0, 2.0, 3.0];
         let found = usable(Tactile { samples: 4, pressures });
         assert_eq!((found.lost_samples, found.tactile.samples, found.samples), (1, 3, vec![0, 2, 3]));
-        assert_eq!(found.sensors, [0, 1]);
-        assert_eq!(found.tactile.pressures, [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
-        assert_eq!(found.dropped, [(2, Fault::NotFinite)]);
+        assert_eq!((found.sensors, found.missing.values), (vec![0, 1, 2], 1));
+        assert_eq!(found.tactile.pressures[..6], [1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
+        assert!(found.tactile.pressures[6].is_nan() && found.dropped.is_empty());
     }
 
     #[test]
@@ -157,7 +220,28 @@ mod tests {
         let mut pressures = vec![1.0, 2.0, nan, 4.0, 5.0, 6.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0];
         (0..3).for_each(|_| pressures.extend([1.0, nan, nan, nan, nan, nan]));
         let found = usable(Tactile { samples: 6, pressures });
-        assert_eq!((found.lost_samples, found.sensors), (0, vec![1]));
+        assert_eq!((found.lost_samples, found.sensors), (0, vec![0, 1]));
+        assert_eq!(found.dropped, [2, 3, 4].map(|sensor| (sensor, Fault::NotFinite)));
+    }
+
+    #[test]
+    fn a_sensor_may_lack_two_of_five_values() {
+        let nan = f32::NAN;
+        let pressures = vec![1.0, nan, 2.0, nan, 4.0, nan, nan, 1.0, nan, 2.0, 1.0, 2.0, 3.0, 4.0, 5.0];
+        let found = usable(Tactile { samples: 5, pressures });
+        assert_eq!((found.sensors, found.missing.values), (vec![0, 2], 2));
+        assert_eq!((found.dropped, found.lost_samples), (vec![(1, Fault::NotFinite)], 0));
+    }
+
+    #[test]
+    fn saturated_values_are_counted_unless_they_are_kept() {
+        let touch = |t: u16| (3.0 * (0.05 * f32::from(t)).sin()).clamp(0.0, 2.0);
+        let tactile = Tactile { samples: 400, pressures: (0..400).map(touch).collect() };
+        let found = usable(tactile.clone());
+        assert!(found.missing.saturated > 100 && found.missing.saturated == found.missing.values);
+        assert_eq!(found.missing.saturated_sensors, 1);
+        let kept = usable_with(tactile.clone(), true);
+        assert_eq!((kept.tactile, kept.missing), (tactile, Missing::default()));
     }
 
     #[test]

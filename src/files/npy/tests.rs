@@ -35,6 +35,11 @@ fn symbols_of_any_type_are_read() {
         })*};
     }
     check!(i8, i16, i32, i64, u8, u16, u32, u64, f32, f64);
+    let halves = [0.0, 5.0, 2.0, 1.0, 0.0, 2.0].map(half::f16::from_f64);
+    write(&path, [2, 3], Order::C, halves.into_iter()).unwrap();
+    assert_eq!(read_symbols(&path).unwrap(), expected);
+    write(&path, [2, 2], Order::C, [true, false, false, true].into_iter()).unwrap();
+    assert_eq!(read_symbols(&path).unwrap(), Symbols { samples: 2, levels: 2, values: vec![1, 0, 0, 1] });
     write(&path, [1, 1], Order::C, [-1_i8].into_iter()).unwrap();
     assert!(read_symbols(&path).is_err());
 }
@@ -149,8 +154,8 @@ fn no_header_takes_long_or_much_memory_to_refuse() {
         (raw(1, &header("<f8", "(-1, 2)"), &[0; 64]), "dimension cannot be negative"),
         (raw(1, &header("<f8", "(4,)"), &[0; 64]), "must have two dimensions"),
         (raw(1, &header("<f8", "()"), &[0; 64]), "must have two dimensions"),
-        (raw(1, &header("<f2", "(2, 2)"), &[0; 8]), "float32, float64 or integers, but its dtype is '<f2'"),
-        (raw(1, &header("|b1", "(2, 2)"), &[0; 8]), "but its dtype is '|b1'"),
+        (raw(1, &header("<f16", "(2, 2)"), &[0; 64]), "numbers or bool, but its dtype is '<f16'"),
+        (raw(1, &header("|b1", "(2, 2)"), &[0, 1, 2, 1]), "is truncated or damaged"),
         (raw(1, &header("<c8", "(2, 2)"), &[0; 64]), "but its dtype is '<c8'"),
         (raw(1, &header("<U3", "(2, 2)"), &[0; 64]), "but its dtype is '<U3'"),
         (raw(1, &header("|O", "(2, 2)"), &[0; 64]), "but its dtype is '|O"),

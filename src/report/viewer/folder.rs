@@ -11,7 +11,7 @@ use super::sketch::sketch;
 use crate::estimate::distances;
 use crate::files::moved_body::MovedBody;
 use crate::files::tables::{read_cells, read_parts, read_rows};
-use crate::files::touch::read_touch;
+use crate::files::touch::{Format, read_recorded};
 use crate::files::{FileError, npy, read_text};
 use crate::settings::Settings;
 use crate::stages::body_map::BodyMap;
@@ -25,24 +25,27 @@ pub(crate) struct Sources<'a> {
     pub folder: &'a Path,
     /// Pressures, if they are not in the folder.
     pub tactile: Option<&'a Path>,
+    /// How to read them.
+    pub format: &'a Format,
     /// Folder of an estimate, if it is not the folder itself.
     pub estimate: Option<&'a Path>,
 }
 
-/// Reads what there is. Makes a map of three dimensions where there is none.
+/// Reads what there is, and says what was guessed of the pressures. Makes a map of three dimensions where there is none.
 ///
 /// # Errors
 /// If there are no pressures, or files do not fit each other.
-pub(crate) fn read(sources: &Sources, settings: &Settings) -> Result<Scene, FileError> {
+pub(crate) fn read(sources: &Sources, settings: &Settings) -> Result<(Scene, Vec<String>), FileError> {
     let folder = sources.folder;
     let tactile = tactile(sources)?;
-    let touch = read_touch(&tactile)?;
+    let recorded = read_recorded(&tactile, sources.format)?;
+    let touch = recorded.tactile;
     let sensors = touch.sensors();
     let body = MovedBody::is_in(folder).then(|| MovedBody::read(folder)).transpose()?;
     if let Some(body) = &body {
         check(folder, body, &touch)?;
     }
-    let interval = interval(folder);
+    let interval = interval(folder).or(recorded.interval);
     let labels = folder.join("labels.csv");
     let truth =
         if labels.is_file() { Some(true_parts(&labels, &folder.join("tree.csv"), sensors)?) } else { None };
@@ -69,7 +72,7 @@ pub(crate) fn read(sources: &Sources, settings: &Settings) -> Result<Scene, File
     let frames = Frames::of(&touch, solids, Frames::every(interval), Frames::ROOM);
     let shown = frames.of_touch(&touch);
     let map = map(&[found, folder], touch, settings)?;
-    Ok(Scene {
+    let scene = Scene {
         name: String::new(),
         frames,
         times: None,
@@ -80,7 +83,8 @@ pub(crate) fn read(sources: &Sources, settings: &Settings) -> Result<Scene, File
         map,
         truth,
         estimate,
-    })
+    };
+    Ok((scene, recorded.guesses))
 }
 
 /// The file of the pressures.

@@ -42,7 +42,10 @@ impl CrossMoments {
             let first = columns.len();
             for i in 0..a.rank {
                 for j in if same { i } else { 0 }..b.rank {
-                    columns.push(chosen.iter().map(|&t| scales[t] * a.at(t)[i] * b.at(t)[j]).collect());
+                    let product = |&t: &usize| scales[t] * a.at(t)[i] * b.at(t)[j];
+                    // What is not known says nothing.
+                    let known = |product: f64| if product.is_nan() { 0.0 } else { product };
+                    columns.push(chosen.iter().map(product).map(known).collect());
                 }
             }
             first..columns.len()

@@ -33,7 +33,8 @@ impl Moments {
         let block = |at: usize| {
             let samples = at * samples / blocks..(at + 1) * samples / blocks;
             let mut monomials = DMatrix::zeros(samples.len(), all);
-            for (row, t) in samples.enumerate() {
+            // The others stay 0.
+            for (row, t) in samples.enumerate().filter(|(_, t)| scales[*t] > 0.0) {
                 let mut column = 0;
                 for motion in motions {
                     let w = motion.at(t);
@@ -98,12 +99,16 @@ pub(super) fn monomials(k: usize) -> Vec<(usize, usize)> {
 }
 
 /// The factor of the monomials at each sample: one over the root of the whole body's Σ |w|² there and of its mean; 0 if nothing
-/// moves.
+/// moves, or the motion of a part is not known there.
 pub(super) fn scales(motions: &[MotionSubspace], samples: usize) -> Vec<f64> {
     let energy = |t: usize| -> f64 { motions.iter().flat_map(|motion| motion.at(t)).map(|w| w * w).sum() };
     let energies: Vec<f64> = (0..samples).into_par_iter().map(energy).collect();
-    let mean = energies.iter().sum::<f64>() / samples.max(1) as f64;
-    let scale = |energy: f64| if mean > 0.0 { 1.0 / (mean * (energy + REST * mean)).sqrt() } else { 0.0 };
+    let known = energies.iter().filter(|energy| !energy.is_nan());
+    let (sum, count) = known.fold((0.0, 0_usize), |(sum, count), energy| (sum + energy, count + 1));
+    let mean = sum / count.max(1) as f64;
+    let scale = |energy: f64| {
+        if mean > 0.0 && !energy.is_nan() { 1.0 / (mean * (energy + REST * mean)).sqrt() } else { 0.0 }
+    };
     energies.into_iter().map(scale).collect()
 }
 

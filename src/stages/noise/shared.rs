@@ -17,7 +17,7 @@ const MAX_SAMPLES: usize = 20_000;
 
 /// The signs of the second differences of a sensor, a bit for each.
 pub(super) struct Signs {
-    /// Whether a difference is other than 0.
+    /// Whether a difference is other than 0, and known.
     some: Vec<u64>,
     /// Whether it is above 0.
     above: Vec<u64>,
@@ -35,7 +35,7 @@ impl Signs {
                     |own: &[f32]| own.iter().rev().fold(0, |word, value| word << 1 | u64::from(is(*value)));
                 differences.chunks(64).map(word).collect()
             };
-            Self { some: bits(|value| value != 0.0), above: bits(|value| value > 0.0) }
+            Self { some: bits(|value| value.abs() > 0.0), above: bits(|value| value > 0.0) }
         };
         tactile.pressures.par_chunks_exact(tactile.samples).map(own).collect()
     }

@@ -5,10 +5,10 @@
 //! counts. A value within its remaining noise counts as no touch.
 
 /// Half-widths of the windows in samples, the widest first.
-const HALF_WIDTHS: [usize; 3] = [10, 5, 2];
+pub(super) const HALF_WIDTHS: [usize; 3] = [10, 5, 2];
 /// Largest residual variance of a fit, over the square of the median second difference, which is 1 to 2.7 times the variance of the
 /// noise.
-const MAX_RESIDUAL: f64 = 1.5;
+pub(super) const MAX_RESIDUAL: f64 = 1.5;
 /// Median second differences below which a value is no touch: a constant, since noise that is cut at 0 has a mean, and a multiple of
 /// the standard error of the value in units of the noise.
 const TOUCH_LIMIT: [f64; 2] = [0.5, 3.5];
@@ -18,11 +18,10 @@ pub(super) fn smooth(series: &mut [f32], size: f32) {
     let size = f64::from(size);
     let sums = sums(series);
     let windows = HALF_WIDTHS.map(Windows::new);
-    let limit = |line: &Line| size * (TOUCH_LIMIT[0] + TOUCH_LIMIT[1] * line.deviation);
     for (t, pressure) in series.iter_mut().enumerate() {
         let line = windows.iter().find_map(|around| around.line(&sums, t, MAX_RESIDUAL * size * size));
         let line = line.unwrap_or(Line { value: f64::from(*pressure), residual: 0.0, deviation: 1.0 });
-        *pressure = if line.value.abs() < limit(&line) { 0.0 } else { line.value as f32 };
+        *pressure = line.touch(size);
     }
 }
 
@@ -37,12 +36,20 @@ fn sums(series: &[f32]) -> Vec<[f64; 3]> {
 }
 
 /// A fitted line at one time.
-struct Line {
-    value: f64,
+pub(super) struct Line {
+    pub value: f64,
     /// Residual variance: residual squares over degrees of freedom.
-    residual: f64,
+    pub residual: f64,
     /// Standard error of the value over the standard deviation of the noise.
-    deviation: f64,
+    pub deviation: f64,
+}
+
+impl Line {
+    /// Its value, 0 where it is within its remaining noise. `size` is the median absolute second difference.
+    pub(super) fn touch(&self, size: f64) -> f32 {
+        let limit = size * (TOUCH_LIMIT[0] + TOUCH_LIMIT[1] * self.deviation);
+        if self.value.abs() < limit { 0.0 } else { self.value as f32 }
+    }
 }
 
 /// The windows of one half-width: around a time, before it, and after it.

@@ -257,7 +257,7 @@ impl Cluster {
     }
 }
 
-/// Replaces what completes roots by the velocity that is predicted, which is no more than the root.
+/// Replaces what completes roots by the velocity that is predicted, which is no more than the root; any, where this is missing.
 fn complete(completed: &mut Mat<f64>, roots: &Roots, loadings: &Mat<f64>, motion: &Mat<f64>) {
     let predicted = product(motion.as_ref(), loadings.transpose());
     for sensor in 0..completed.ncols() {
@@ -265,7 +265,7 @@ fn complete(completed: &mut Mat<f64>, roots: &Roots, loadings: &Mat<f64>, motion
         for ((completed, (predicted, root)), least) in
             completed.col_as_slice_mut(sensor).iter_mut().zip(both).zip(&roots.thresholds)
         {
-            if root < least {
+            if root < least || root.is_nan() {
                 *completed = predicted.min(*root);
             }
         }
@@ -279,7 +279,7 @@ fn told_by_censored(tolerance: f64) -> f64 {
 }
 
 /// ln det(I + scale · Σ c cᵀ cov(w)) on average over samples, where the sum is over the roots at a sample, and one that is not felt
-/// counts `censored`. In: the roots of some sensors, and their c, for which each component of w has a variance of 1.
+/// counts `censored`, and one that is missing nothing. In: the roots of some sensors, and their c, for which each component of w has a variance of 1.
 fn log_determinant(roots: &Roots, whitened: &Mat<f64>, scale: f64, censored: f64) -> f64 {
     let k = whitened.ncols();
     let row = |sensor| std::array::from_fn(|at| if at < k { whitened[(sensor, at)] } else { 0.0 });
@@ -287,8 +287,9 @@ fn log_determinant(roots: &Roots, whitened: &Mat<f64>, scale: f64, censored: f64
     let of_sample = |t: usize| {
         let mut matrix = [[0.0; MAX_RANK]; MAX_RANK];
         for (sensor, c) in rows.iter().enumerate() {
-            let is_felt = roots.values[(t, sensor)] >= roots.thresholds[t];
-            let weight = if is_felt { scale } else { scale * censored };
+            let root = roots.values[(t, sensor)];
+            let told = if root.is_nan() { 0.0 } else { censored };
+            let weight = if root >= roots.thresholds[t] { scale } else { scale * told };
             for (i, row) in matrix.iter_mut().enumerate() {
                 (0..=i).for_each(|j| row[j] += weight * c[i] * c[j]);
             }

@@ -84,15 +84,18 @@ struct Block {
 }
 
 impl Block {
-    /// All of them. What is not felt begins a little below 0.
+    /// All of them. What is not felt begins a little below 0, and what is missing at 0.
     fn all(roots: &Roots) -> Vec<Self> {
-        let mean = roots.values.sum() / (roots.samples() * roots.sensors()) as f64;
+        let mean = roots.sums()[0] / (roots.samples() * roots.sensors()) as f64;
         let firsts: Vec<usize> = (0..roots.samples()).step_by(BLOCK).collect();
         let block = |first: usize| {
             let count = BLOCK.min(roots.samples() - first);
             let own = roots.values.subrows(first, count);
             let is_felt = |t: usize, sensor: usize| own[(t, sensor)] >= roots.thresholds[first + t];
-            let begin = |t, sensor| (if is_felt(t, sensor) { own[(t, sensor)] } else { -mean }) as f32;
+            let begin = |t, sensor| match own[(t, sensor)] {
+                root if root.is_nan() => 0.0,
+                root => (if is_felt(t, sensor) { root } else { -mean }) as f32,
+            };
             let estimate = Mat::from_fn(count, own.ncols(), begin);
             Self {
                 roots: Mat::from_fn(count, own.ncols(), |t, sensor| own[(t, sensor)] as f32),
@@ -105,7 +108,7 @@ impl Block {
         firsts.into_par_iter().map(block).collect()
     }
 
-    /// A root where it is felt, and else the extrapolated estimate, which is no more than the root.
+    /// A root where it is felt, and else the extrapolated estimate, which is no more than the root; any, where this is missing.
     #[inline]
     fn filled(&self, t: usize, sensor: usize, step: f32) -> f32 {
         let (root, estimate) = (self.roots[(t, sensor)], self.estimate[(t, sensor)]);

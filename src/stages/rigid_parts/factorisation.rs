@@ -53,7 +53,7 @@ impl Fit {
 impl Roots {
     /// Where the iterations start: the principal components of series that are linear in the motion.
     pub(crate) fn start(&self) -> Start {
-        let linear = if self.signed { self.values.clone() } else { self.differences() };
+        let linear = if self.signed { self.filled() } else { self.differences() };
         let loadings = principal_axes(&linear, MAX_RANK);
         Start { motion: product(linear.as_ref(), loadings.as_ref()), loadings }
     }
@@ -73,9 +73,9 @@ impl Roots {
         Fit { loadings, motion }
     }
 
-    /// Residual sum of squares of a fit over all roots, as a share of their sum of squares.
+    /// Residual sum of squares of a fit over all roots that are known, as a share of their sum of squares.
     pub(crate) fn total_residual(&self, fit: &Fit) -> f64 {
-        self.residuals_of_samples(fit).iter().sum::<f64>() / self.values.squared_norm_l2()
+        self.residuals_of_samples(fit).iter().sum::<f64>() / self.sums()[1]
     }
 
     /// Residual sum of squares of a fit at each sample.
@@ -85,7 +85,9 @@ impl Roots {
         for sensor in 0..self.sensors() {
             let own = predictions.col_as_slice(sensor).iter().zip(self.values.col_as_slice(sensor));
             for (residual, (prediction, root)) in residuals.iter_mut().zip(own) {
-                *residual += (root - self.censored(*prediction)).powi(2);
+                if !root.is_nan() {
+                    *residual += (root - self.censored(*prediction)).powi(2);
+                }
             }
         }
         residuals

@@ -29,16 +29,21 @@ pub(super) fn typical_floor(floors: &[f64], scales: &[f64]) -> f64 {
 pub(super) fn telling_samples(series: &[&[f32]], floors: &[f64], most: usize) -> Vec<usize> {
     let samples = series.first().map_or(0, |series| series.len());
     let mean = |series: &&[f32]| {
-        series.iter().map(|pressure| f64::from(pressure.abs())).sum::<f64>() / samples as f64
+        let known = series.iter().filter(|pressure| !pressure.is_nan());
+        let (sum, count) =
+            known.fold((0.0, 0), |(sum, count), pressure| (sum + f64::from(pressure.abs()), count + 1));
+        sum / f64::from(count.max(1))
     };
     let means: Vec<f64> = series.par_iter().map(mean).collect();
     let scales: Vec<f64> = means.iter().map(|mean| mean.sqrt()).collect();
-    let least = typical_floor(floors, &scales).powi(2) * series.len() as f64;
-    let size = |t: usize| -> f64 {
-        let own = series.iter().zip(&means).filter(|(_, mean)| **mean > 0.0);
-        own.map(|(series, mean)| f64::from(series[t].abs()) / mean).sum()
+    let least = typical_floor(floors, &scales).powi(2);
+    let is_telling = |t: &usize| {
+        let missing = series.iter().filter(|series| series[*t].is_nan()).count();
+        let own = series.iter().zip(&means).filter(|(series, mean)| **mean > 0.0 && !series[*t].is_nan());
+        let size: f64 = own.map(|(series, mean)| f64::from(series[*t].abs()) / mean).sum();
+        size > least * (series.len() - missing) as f64
     };
-    let telling: Vec<usize> = (0..samples).into_par_iter().filter(|t| size(*t) > least).collect();
+    let telling: Vec<usize> = (0..samples).into_par_iter().filter(is_telling).collect();
     // Sensors with few levels may feel nothing above their least.
     if telling.is_empty() {
         return felt_samples(series, most);

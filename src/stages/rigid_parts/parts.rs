@@ -47,7 +47,7 @@ pub struct RigidParts {
 
 /// Estimates the parts.
 ///
-/// In: M × T pressures, finite and of any sign, of sensors that all change; and `sensors`, at least
+/// In: M × T pressures, of any sign and NaN where one is missing, of sensors that all change; and `sensors`, at least
 /// [`MIN_SENSORS`](super::MIN_SENSORS) of them, rising and spread over all. The motions of parts are learned from these; the other
 /// sensors are assigned to the part with the smallest residual. Out: the part of all M sensors. No random numbers are drawn, and
 /// the number of threads changes no bit.

@@ -23,7 +23,8 @@ const BELOW: f64 = 1.0 - 1e-6;
 
 /// Roots of the pressures on some sensors at some samples.
 pub(crate) struct Roots {
-    /// Samples × sensors, √Pa, or normalised.
+    /// Samples × sensors, √Pa, or normalised; NaN where a value is missing. It is then neither felt nor any bound: every comparison with
+    /// NaN is false.
     pub values: Mat<f64>,
     /// At each sample, the least root that is felt.
     pub thresholds: Vec<f64>,
@@ -35,6 +36,7 @@ impl Roots {
     /// Of series of pressures, at these samples.
     pub(crate) fn at(series: &[&[f32]], samples: &[usize], signed: bool) -> Self {
         let root = |pressure: f32| match signed {
+            _ if pressure.is_nan() => f64::NAN,
             true => f64::from(pressure.abs()).sqrt().copysign(f64::from(pressure)),
             false => f64::from(pressure.max(0.0)).sqrt(),
         };
@@ -78,7 +80,8 @@ impl Roots {
         for sensor in 0..self.sensors() {
             // What is felt is above this, too.
             let roots = self.values.col_as_slice_mut(sensor).iter_mut();
-            roots.for_each(|root| *root = f64::max(*root, BELOW * BELOW * floor));
+            let least = BELOW * BELOW * floor;
+            roots.filter(|root| **root < least).for_each(|root| *root = least);
         }
         self
     }
@@ -86,8 +89,9 @@ impl Roots {
     /// The root mean square of each sensor.
     pub(super) fn scales(&self) -> Vec<f64> {
         let scale = |sensor| {
-            let roots = self.values.col_as_slice(sensor);
-            (roots.iter().map(|root| root * root).sum::<f64>() / roots.len() as f64).sqrt()
+            let roots = self.values.col_as_slice(sensor).iter().filter(|root| !root.is_nan());
+            let (sum, count) = roots.fold((0.0, 0), |(sum, count), root| (sum + root * root, count + 1));
+            (sum / f64::from(count.max(1))).sqrt()
         };
         (0..self.sensors()).map(scale).collect()
     }
@@ -96,12 +100,14 @@ impl Roots {
     pub(super) fn sizes(&self) -> Vec<f64> {
         /// Of the median.
         const LEAST: f64 = 0.1;
-        let mut sizes = vec![0.0; self.samples()];
+        let mut sums = vec![(0.0, 0); self.samples()];
         for sensor in 0..self.sensors() {
             let roots = self.values.col_as_slice(sensor);
-            sizes.iter_mut().zip(roots).for_each(|(size, root)| *size += root * root);
+            let known = sums.iter_mut().zip(roots).filter(|(_, root)| !root.is_nan());
+            known.for_each(|((sum, count), root)| (*sum, *count) = (*sum + root * root, *count + 1));
         }
-        sizes.iter_mut().for_each(|size| *size = (*size / self.sensors() as f64).sqrt());
+        let size = |(sum, count): (f64, i32)| (sum / f64::from(count.max(1))).sqrt();
+        let sizes: Vec<f64> = sums.into_iter().map(size).collect();
         let least = f64::max(f64::MIN_POSITIVE, LEAST * median(sizes.clone()));
         sizes.into_iter().map(|size| size.max(least)).collect()
     }
@@ -131,8 +137,36 @@ impl Roots {
         Self { values, thresholds: self.thresholds.clone(), signed: self.signed }
     }
 
-    /// Averages over samples: of the products of two sensors' roots, sensors × sensors, and of each sensor's roots.
+    /// Whether a value is missing.
+    fn has_gaps(&self) -> bool {
+        (0..self.sensors()).any(|sensor| self.values.col_as_slice(sensor).iter().any(|root| root.is_nan()))
+    }
+
+    /// The roots, with 0 where a value is missing.
+    pub(super) fn filled(&self) -> Mat<f64> {
+        known(&self.values)
+    }
+
+    /// The sum of all roots, and of their squares.
+    pub(super) fn sums(&self) -> [f64; 2] {
+        let sums = |values: &Mat<f64>| [values.sum(), values.squared_norm_l2()];
+        if self.has_gaps() { sums(&self.filled()) } else { sums(&self.values) }
+    }
+
+    /// Averages over samples: of the products of two sensors' roots, sensors × sensors, and of each sensor's roots. Of those at which
+    /// both have a value.
     pub(crate) fn moments(&self) -> (Mat<f64>, Vec<f64>) {
+        if self.has_gaps() {
+            let filled = self.filled();
+            let is_known = |t, sensor| f64::from(u8::from(!self.values[(t, sensor)].is_nan()));
+            let known = Mat::from_fn(self.samples(), self.sensors(), is_known);
+            let counts = product(known.transpose(), known.as_ref());
+            let sums = product(filled.transpose(), filled.as_ref());
+            let average = |i, j| sums[(i, j)] / f64::max(1.0, counts[(i, j)]);
+            let mean = |at| filled.col_as_slice(at).iter().sum::<f64>() / f64::max(1.0, counts[(at, at)]);
+            let means = (0..self.sensors()).map(mean).collect();
+            return (Mat::from_fn(self.sensors(), self.sensors(), average), means);
+        }
         let share = 1.0 / self.samples().max(1) as f64;
         let mean = |sensor| self.values.col_as_slice(sensor).iter().sum::<f64>() * share;
         let means = (0..self.sensors()).map(mean).collect();
@@ -151,20 +185,25 @@ impl Roots {
 
     /// Whether nothing is felt.
     pub(crate) fn is_empty(&self) -> bool {
-        self.values.norm_max() == 0.0
+        let is_nothing = |root: &f64| *root == 0.0 || root.is_nan();
+        (0..self.sensors()).all(|sensor| self.values.col_as_slice(sensor).iter().all(is_nothing))
     }
 
     /// Each sensor's root minus that of the sensor that feels least at the same samples: linear in w without censoring, if the
-    /// two are opposite to each other and never feel at the same sample.
+    /// two are opposite to each other and never feel at the same sample. 0 where either has no value.
     pub(crate) fn differences(&self) -> Mat<f64> {
-        let together = product(self.values.transpose(), self.values.as_ref());
+        let has_gaps = self.has_gaps();
+        let filled = has_gaps.then(|| self.filled());
+        let values = filled.as_ref().unwrap_or(&self.values);
+        let together = product(values.transpose(), values.as_ref());
         let opposite = |sensor: usize| {
             let alive = (0..self.sensors()).filter(|other| together[(*other, *other)] > 0.0);
             let likeness = |other: usize| together[(sensor, other)] / together[(other, other)].sqrt();
             alive.min_by(|a, b| likeness(*a).total_cmp(&likeness(*b))).unwrap_or(sensor)
         };
         let opposites: Vec<usize> = (0..self.sensors()).map(opposite).collect();
-        &self.values - columns(&self.values, &opposites)
+        let differences = &self.values - columns(&self.values, &opposites);
+        if has_gaps { known(&differences) } else { differences }
     }
 }
 
@@ -173,6 +212,12 @@ pub(super) fn product(left: MatRef<'_, f64>, right: MatRef<'_, f64>) -> Mat<f64>
     let mut product = Mat::zeros(left.nrows(), right.ncols());
     matmul(product.as_mut(), Accum::Replace, left, right, 1.0, Par::Seq);
     product
+}
+
+/// A matrix with 0 in place of NaN.
+fn known(matrix: &Mat<f64>) -> Mat<f64> {
+    let known = |value: f64| if value.is_nan() { 0.0 } else { value };
+    Mat::from_fn(matrix.nrows(), matrix.ncols(), |row, column| known(matrix[(row, column)]))
 }
 
 /// Some columns.
@@ -184,7 +229,7 @@ pub(super) fn columns(matrix: &Mat<f64>, which: &[usize]) -> Mat<f64> {
 pub(crate) fn is_signed(tactile: &Tactile) -> bool {
     let sums = |series: &[f32]| {
         series.iter().fold((0.0, 0.0), |(below, all), pressure| {
-            let size = f64::from(pressure.abs());
+            let size = if pressure.is_nan() { 0.0 } else { f64::from(pressure.abs()) };
             (if *pressure < 0.0 { below + size } else { below }, all + size)
         })
     };

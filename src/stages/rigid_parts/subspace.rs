@@ -24,7 +24,8 @@ pub(super) const ROTATION_RANK: usize = 3;
 pub(crate) struct MotionSubspace {
     /// k, at most [`MAX_RANK`] if it is that of one cluster of sensors; 0 if these feel nothing.
     pub rank: usize,
-    /// w, T × k, by sample, in √Pa; along the principal axes of what the sensors feel.
+    /// w, T × k, by sample, in √Pa; along the principal axes of what the sensors feel. NaN at a sample at which fewer than k sensors have
+    /// a value.
     pub basis: Vec<f64>,
 }
 
@@ -41,7 +42,7 @@ pub(super) struct Loadings {
 }
 
 impl MotionSubspace {
-    /// Of the sensors of a cluster, from their series of T pressures, which must be finite.
+    /// Of the sensors of a cluster, from their series of T pressures, NaN where one is missing.
     ///
     /// `rank` is k; without it, the lowest that explains nearly what the best one does. `signed` says whether negative pressures
     /// are signal.
@@ -54,7 +55,7 @@ impl MotionSubspace {
         Self::from_orthonormal(&series, fit.loadings(), signed)
     }
 
-    /// From given loadings c of sensors, and their series of T pressures, which must be finite.
+    /// From given loadings c of sensors, and their series of T pressures, NaN where one is missing.
     pub(super) fn of_loadings(series: &[&[f32]], given: &Loadings, signed: bool) -> Self {
         let k = given.values.ncols();
         Self::from_roots(series, k, &|samples| {
@@ -75,10 +76,16 @@ impl MotionSubspace {
         /// Samples whose roots are in memory at once.
         const BLOCK: usize = 240;
         let samples = series.first().map_or(0, |series| series.len());
+        let has_gaps = series.par_iter().any(|series| series.iter().any(|pressure| pressure.is_nan()));
+        let is_known = |t: usize| series.iter().filter(|series| !series[t].is_nan()).count() >= k;
         let mut basis = vec![0.0; samples * k];
         basis.par_chunks_mut(BLOCK * k).enumerate().for_each(|(block, values)| {
             let samples: Vec<usize> = (block * BLOCK..block * BLOCK + values.len() / k).collect();
             values.copy_from_slice(&motion(&samples));
+            if has_gaps {
+                let unknown = samples.iter().zip(values.chunks_mut(k)).filter(|(t, _)| !is_known(**t));
+                unknown.for_each(|(_, w)| w.fill(f64::NAN));
+            }
         });
         Self { rank: k, basis }
     }
@@ -127,7 +134,7 @@ impl MotionSubspace {
 pub(super) fn felt_samples(series: &[&[f32]], most: usize) -> Vec<usize> {
     let samples = series.first().map_or(0, |series| series.len());
     let felt: Vec<usize> =
-        (0..samples).into_par_iter().filter(|t| series.iter().any(|series| series[*t] != 0.0)).collect();
+        (0..samples).into_par_iter().filter(|t| series.iter().any(|series| series[*t].abs() > 0.0)).collect();
     stratified(felt.len(), most).map(|at| felt[at]).collect()
 }
 

@@ -1,0 +1,49 @@
+//! Fuzz the reader of recordings: tables, arrays and archives of them, with some options; what is accepted is cleaned, and
+//! parts of a few sensors are estimated.
+
+#![no_main]
+
+use bodyschema::estimate::estimate;
+use bodyschema::files::touch::{Decimal, Format, Separator, TimeColumn, read_recorded};
+use bodyschema::numerics::rng::stream;
+use bodyschema::recording::Recording;
+use bodyschema::settings::Settings;
+use bodyschema_fuzz::{accepted, file};
+use libfuzzer_sys::fuzz_target;
+
+/// Most sensors and samples that go on to the estimate.
+const FEW: usize = 32;
+
+/// Options by the bits of a byte.
+fn format(bits: u8) -> Format {
+    let is = |bit: u8| bits >> bit & 1 == 1;
+    let separators = [None, Some(Separator::Semicolon), Some(Separator::Tab), Some(Separator::Blank)];
+    Format {
+        separator: separators[usize::from(bits & 3)],
+        decimal: is(2).then_some(Decimal::Comma),
+        header: is(3).then_some(is(4)),
+        time: match bits >> 5 & 3 {
+            1 => TimeColumn::None,
+            2 => TimeColumn::Is("2".to_owned()),
+            _ => TimeColumn::Guess,
+        },
+        leave_out: if is(7) { vec!["a".to_owned()] } else { Vec::new() },
+        array: None,
+    }
+}
+
+fuzz_target!(|data: &[u8]| {
+    let Some((&bits, bytes)) = data.split_first() else { return };
+    let Some(recorded) = accepted(read_recorded(&file("touch", bytes), &format(bits))) else { return };
+    let tactile = recorded.tactile;
+    assert!(recorded.interval.is_none_or(|interval| interval > 0.0));
+    assert!(tactile.sensors() > 0 && tactile.sensors() * tactile.samples == tactile.pressures.len());
+    let is_small = tactile.sensors() <= FEW && tactile.samples <= FEW;
+    let recording = Recording::new(tactile);
+    assert!(recording.tactile.pressures.iter().all(|pressure| !pressure.is_infinite()));
+    if is_small {
+        let levels = Settings::paper().quantise;
+        let found = accepted(estimate(&recording, &levels, &mut stream(1, 1, "fuzz", 0), &|| ()));
+        assert!(found.is_none_or(|found| found.parts.labels.len() == recording.sensors.len()));
+    }
+});

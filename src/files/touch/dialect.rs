@@ -1,0 +1,142 @@
+//! Guess from the first rows of a table what is between its cells, and what its decimals begin with.
+
+use super::format::{Decimal, Format, Separator};
+
+/// How a table is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Dialect {
+    pub separator: Separator,
+    pub decimal: Decimal,
+    /// Whether one of them was guessed and is none of commas and points.
+    pub is_guess: bool,
+}
+
+/// Rows that are looked at.
+const ROWS: usize = 50;
+
+impl Dialect {
+    /// Of a table that begins with this text, as far as the user does not say.
+    pub(super) fn of(head: &[u8], format: &Format) -> Self {
+        let text = String::from_utf8_lossy(head);
+        let mut rows: Vec<&str> = text
+            .split(['\r', '\n'])
+            .map(str::trim)
+            .filter(|row| !row.is_empty() && !row.starts_with(['#', '%']))
+            .take(ROWS)
+            .collect();
+        // The first may have names, and the last may be cut off.
+        if rows.len() > 2 {
+            rows.remove(0);
+            rows.pop();
+        }
+        let separator = format.separator.unwrap_or_else(|| separator(&rows));
+        let decimal = format.decimal.unwrap_or_else(|| decimal(&rows, separator));
+        let is_guess = format.separator.is_none() && separator != Separator::Comma
+            || format.decimal.is_none() && decimal == Decimal::Comma;
+        Self { separator, decimal, is_guess }
+    }
+}
+
+fn separator(rows: &[&str]) -> Separator {
+    let most = |has: &dyn Fn(&str) -> bool| 2 * rows.iter().filter(|row| has(row)).count() > rows.len();
+    // `1,5 2,5`: commas within numbers, and blanks between them.
+    let has_decimal_commas = |row: &str| {
+        let mut cells = row.split_whitespace();
+        row.contains(char::is_whitespace) && cells.all(|cell| is_decimal_comma(cell) || is_whole(cell))
+    };
+    if most(&|row| row.contains('\t')) {
+        Separator::Tab
+    } else if most(&|row| row.contains(';')) {
+        Separator::Semicolon
+    } else if most(&has_decimal_commas) {
+        Separator::Blank
+    } else if most(&|row| row.contains(',')) {
+        Separator::Comma
+    } else if most(&|row| row.contains(char::is_whitespace)) {
+        Separator::Blank
+    } else {
+        Separator::Comma
+    }
+}
+
+/// Commas if a number has one and none has a point.
+fn decimal(rows: &[&str], separator: Separator) -> Decimal {
+    let cells: Vec<&str> = match separator {
+        // Only in quotes can a cell have a comma.
+        Separator::Comma => rows.iter().flat_map(|row| row.split('"').skip(1).step_by(2)).collect(),
+        Separator::Semicolon => rows.iter().flat_map(|row| row.split(';')).collect(),
+        Separator::Tab => rows.iter().flat_map(|row| row.split('\t')).collect(),
+        Separator::Blank => rows.iter().flat_map(|row| row.split_whitespace()).collect(),
+    };
+    let cells: Vec<&str> = cells.iter().map(|cell| cell.trim_matches([' ', '"'])).collect();
+    let has_point = |cell: &&str| cell.contains('.') && cell.parse::<f64>().is_ok();
+    let has_comma = |cell: &&str| is_decimal_comma(cell);
+    if cells.iter().any(has_comma) && !cells.iter().any(has_point) { Decimal::Comma } else { Decimal::Point }
+}
+
+/// Whether a cell is a number with a comma, such as `-1,5e3`.
+fn is_decimal_comma(cell: &str) -> bool {
+    cell.split_once(',').is_some_and(|(whole, rest)| {
+        let is_first = |text: &str| text.ends_with(|letter: char| letter.is_ascii_digit());
+        is_first(whole)
+            && is_whole(whole)
+            && rest.starts_with(|letter: char| letter.is_ascii_digit())
+            && format!("0.{rest}").parse::<f64>().is_ok()
+    })
+}
+
+/// Whether a cell is a whole number.
+fn is_whole(cell: &str) -> bool {
+    let digits = cell.trim_start_matches(['+', '-']);
+    !digits.is_empty() && digits.bytes().all(|byte| byte.is_ascii_digit())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn guess(text: &str) -> (Separator, Decimal, bool) {
+        let Dialect { separator, decimal, is_guess } = Dialect::of(text.as_bytes(), &Format::default());
+        (separator, decimal, is_guess)
+    }
+
+    #[test]
+    fn separators_and_decimals_are_guessed() {
+        use Decimal::{Comma as C, Point as P};
+        for (text, expected) in [
+            ("a,b\n1.5,2\n3,4\n5,6\n", (Separator::Comma, P, false)),
+            ("1, 5\n3, 4\n5, 6\n", (Separator::Comma, P, false)),
+            ("a;b\n1.5;2\n3;4\n5;6\n", (Separator::Semicolon, P, true)),
+            ("a;b\r\n1,5;2\r\n3;4,25\r\n5;6\r\n", (Separator::Semicolon, C, true)),
+            (
+                "Zeit;a\n01.05.2024 12:00;2,5\n01.05.2024 12:01;3,5\n01.05.2024 12:02;3,5\n",
+                (Separator::Semicolon, C, true),
+            ),
+            ("a\tb\n1.5\t2\n3\t4\n5\t6\n", (Separator::Tab, P, true)),
+            ("1,5\t2\n3\t4\n5\t6\n", (Separator::Tab, C, true)),
+            ("1.5  2\n3   4\n5 6\n", (Separator::Blank, P, true)),
+            ("1,5 2,5\n3,5 4\n5 6,5\n", (Separator::Blank, C, true)),
+            ("\"1,5\",\"2,5\"\n\"3\",\"4\"\n\"1,5\",\"2,5\"\n\"1\",\"2\"\n", (Separator::Comma, C, true)),
+            ("# a b\n1.5e-3 2\n3 4\n5 6\n", (Separator::Blank, P, true)),
+            ("7\n8\n9\n", (Separator::Comma, P, false)),
+            ("", (Separator::Comma, P, false)),
+            ("\u{fffd},,\"", (Separator::Comma, P, false)),
+        ] {
+            assert_eq!(guess(text), expected, "{text:?}");
+        }
+    }
+
+    #[test]
+    fn what_is_said_is_not_guessed() {
+        let format = Format {
+            separator: Some(Separator::Semicolon),
+            decimal: Some(Decimal::Point),
+            ..Format::default()
+        };
+        let found = Dialect::of(b"1,5 2\n3,5 4\n", &format);
+        assert_eq!(
+            found,
+            Dialect { separator: Separator::Semicolon, decimal: Decimal::Point, is_guess: false }
+        );
+    }
+}

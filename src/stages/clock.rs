@@ -1,0 +1,214 @@
+//! Tell a column of times or of row numbers from one of pressures: by its name, or because it rises by even steps.
+//!
+//! A column of times is no sensor, but would count as one. What moves does not rise by the same step throughout.
+
+use std::fmt::{self, Display, Formatter};
+
+/// Fewest values that tell an even rise.
+pub const MIN_VALUES: usize = 16;
+/// Share of steps that are even at least: frames may be lost, and a counter may begin again.
+const EVEN: f64 = 0.95;
+/// How far an even step may be from the median one, as a share of it: clocks jitter.
+const JITTER: f64 = 0.1;
+
+/// A column of times, or of row numbers.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Clock {
+    /// What tells it.
+    pub mark: Mark,
+    /// Time from one sample to the next, s, where it is known: the median step.
+    pub interval: Option<f64>,
+}
+
+/// What tells that a column is no sensor.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Mark {
+    /// Its name.
+    Name,
+    /// It rises by even steps.
+    EvenSteps,
+    /// It rises by one from sample to sample.
+    Counts,
+}
+
+impl Display for Mark {
+    fn fmt(&self, formatter: &mut Formatter<'_>) -> fmt::Result {
+        formatter.write_str(match self {
+            Self::Name => "is taken for the time by its name",
+            Self::EvenSteps => "rises by even steps and is taken for the time",
+            Self::Counts => "counts the rows",
+        })
+    }
+}
+
+impl Clock {
+    /// Of a column with this name, if it has one; `None` if it may be a sensor.
+    ///
+    /// In: all values, NaN where there is none.
+    pub fn of(name: Option<&str>, values: &[f64]) -> Option<Self> {
+        let unit = name.and_then(unit_of);
+        let step = median_step(values);
+        if let Some(unit) = unit {
+            return Some(Self { mark: Mark::Name, interval: step.map(|step| step * unit.seconds(values)) });
+        }
+        let step = step.filter(|step| values.len() >= MIN_VALUES && is_even(values, *step))?;
+        let counts = step == 1.0 && values.iter().all(|value| value.fract() == 0.0);
+        let interval = (!counts).then(|| step * Unit::Unknown.seconds(values));
+        Some(Self { mark: if counts { Mark::Counts } else { Mark::EvenSteps }, interval })
+    }
+}
+
+/// Whether a column of this name holds times, whatever its values.
+pub fn is_time(name: &str) -> bool {
+    unit_of(name).is_some()
+}
+
+/// Whether a column may rise by even steps, given its first values, so that [`Clock::of`] should see all.
+pub fn may_rise(first: &[f64]) -> bool {
+    let rising = first.windows(2).filter(|pair| pair[1] > pair[0]).count();
+    first.len() < 2 || 2 * rising > first.len() - 1
+}
+
+/// The unit that a name of a column of times says.
+#[derive(Clone, Copy)]
+enum Unit {
+    Seconds(f64),
+    /// Seconds, or what a time since 1970 is in.
+    Unknown,
+}
+
+impl Unit {
+    /// Seconds of one unit.
+    fn seconds(self, values: &[f64]) -> f64 {
+        let size = values.iter().find(|value| value.is_finite()).map_or(0.0, |value| value.abs());
+        match self {
+            Self::Seconds(seconds) => seconds,
+            // Today is 1.7e9 s after 1970.
+            Self::Unknown if size > 1e17 => 1e-9,
+            Self::Unknown if size > 1e14 => 1e-6,
+            Self::Unknown if size > 1e11 => 1e-3,
+            Self::Unknown => 1.0,
+        }
+    }
+}
+
+/// The unit of a column whose name is one of a time, such as `time`, `%time`, `Time [ms]` or `field.header.stamp`.
+fn unit_of(name: &str) -> Option<Unit> {
+    const TIMES: [&str; 12] = [
+        "time",
+        "times",
+        "timestamp",
+        "timestamps",
+        "stamp",
+        "stamps",
+        "date",
+        "datetime",
+        "zeit",
+        "uhrzeit",
+        "elapsed",
+        "clock",
+    ];
+    const UNITS: [(&str, f64); 14] = [
+        ("s", 1.0),
+        ("sec", 1.0),
+        ("secs", 1.0),
+        ("second", 1.0),
+        ("seconds", 1.0),
+        ("ms", 1e-3),
+        ("msec", 1e-3),
+        ("us", 1e-6),
+        ("µs", 1e-6),
+        ("μs", 1e-6),
+        ("usec", 1e-6),
+        ("ns", 1e-9),
+        ("nsec", 1e-9),
+        ("nanosec", 1e-9),
+    ];
+    let lower = name.to_lowercase();
+    let words: Vec<&str> =
+        lower.split(|letter: char| !letter.is_alphanumeric()).filter(|word| !word.is_empty()).collect();
+    let unit = |word: &str| UNITS.iter().find(|(known, _)| *known == word).map(|(_, seconds)| *seconds);
+    let is_time = |word: &str| TIMES.contains(&word);
+    match words[..] {
+        // `sec` and `nanosec` of a ROS stamp, but no `s`, which may be a sensor.
+        [.., last] if last.len() > 2 && unit(last).is_some() => unit(last).map(Unit::Seconds),
+        [.., time, last] if is_time(time) || time == "t" => unit(last).map(Unit::Seconds),
+        [.., last] if is_time(last) => Some(Unit::Unknown),
+        _ => None,
+    }
+}
+
+/// The median of the steps that rise.
+fn median_step(values: &[f64]) -> Option<f64> {
+    let steps = values.windows(2).map(|pair| pair[1] - pair[0]);
+    let mut rising: Vec<f64> = steps.filter(|step| *step > 0.0 && step.is_finite()).collect();
+    let middle = rising.len() / 2;
+    (!rising.is_empty()).then(|| *rising.select_nth_unstable_by(middle, f64::total_cmp).1)
+}
+
+/// Whether nearly all steps are this one.
+fn is_even(values: &[f64], step: f64) -> bool {
+    let even = values.windows(2).filter(|pair| (pair[1] - pair[0] - step).abs() <= JITTER * step).count();
+    even as f64 >= EVEN * (values.len() - 1) as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn even(first: f64, step: f64) -> Vec<f64> {
+        (0..200).map(|t| first + step * f64::from(t)).collect()
+    }
+
+    fn interval(name: Option<&str>, values: &[f64]) -> Option<f64> {
+        Clock::of(name, values).and_then(|clock| clock.interval)
+    }
+
+    #[test]
+    fn times_are_told_by_their_names() {
+        let rough: Vec<f64> = (0..20).map(|t| f64::from(t * t)).collect();
+        for name in [
+            "time",
+            "%time",
+            "Time [ms]",
+            "field.header.stamp",
+            "time_s",
+            "t (s)",
+            "__time",
+            "Zeit",
+            "nanosec",
+        ] {
+            assert_eq!(Clock::of(Some(name), &rough).map(|clock| clock.mark), Some(Mark::Name), "{name}");
+        }
+        for name in ["s", "left_0", "sensor", "timer_pad", "t", "", "pressure [Pa]", "ms", "seq"] {
+            assert_eq!(Clock::of(Some(name), &rough), None, "{name}");
+        }
+        assert!((interval(Some("time [ms]"), &even(5.0, 20.0)).unwrap() - 0.02).abs() < 1e-12);
+        assert!((interval(Some("%time"), &even(1.7e18, 1e8)).unwrap() - 0.1).abs() < 1e-6);
+        // Text, or nothing.
+        assert_eq!(Clock::of(Some("date"), &[f64::NAN; 3]), Some(Clock { mark: Mark::Name, interval: None }));
+    }
+
+    #[test]
+    fn even_steps_tell_a_clock_without_a_name() {
+        assert_eq!(interval(None, &even(1.7e9, 0.125)), Some(0.125));
+        assert_eq!(Clock::of(None, &even(3.0, 1.0)), Some(Clock { mark: Mark::Counts, interval: None }));
+        // A clock that jitters, lost some frames, and begins again.
+        let mut values: Vec<f64> =
+            even(0.0, 0.1).iter().enumerate().map(|(t, value)| value + 0.002 * (t as f64).sin()).collect();
+        values[50..].iter_mut().for_each(|value| *value += 0.3);
+        values[120..].iter_mut().for_each(|value| *value -= 12.0);
+        assert!((interval(None, &values).unwrap() - 0.1).abs() < 0.003);
+    }
+
+    #[test]
+    fn what_may_be_a_sensor_is_no_clock() {
+        let speeds: Vec<f64> = (0..200).map(|t| (0.03 * f64::from(t)).sin().max(0.0).powi(2)).collect();
+        let rising: Vec<f64> = (0..200).map(|t| (0.01 * f64::from(t)).exp()).collect();
+        let few = even(0.0, 0.1)[..MIN_VALUES - 1].to_vec();
+        for values in [speeds, rising, few, vec![2.0; 100], vec![f64::NAN; 100], Vec::new(), vec![1.0]] {
+            assert_eq!(Clock::of(None, &values), None, "{values:?}");
+        }
+        assert!(may_rise(&even(0.0, 1.0)) && !may_rise(&[0.0; 60]) && may_rise(&[1.0]));
+    }
+}
