@@ -45,6 +45,33 @@ for name, shape in [("promising", b"(99999999, 9)"), ("huge", b"(184467440737095
     put("npy", name, b"\x93NUMPY\x01\x00" + len(text).to_bytes(2, "little") + text)
 put("npy", "long-header", b"\x93NUMPY\x02\x00\xff\xff\xff\xff{")
 
+felt = rng.exponential(size=(24, 14)) * rng.integers(0, 2, (24, 14))
+felt[0] = range(1, 15)
+timed = np.column_stack([0.1 * np.arange(24), felt])
+
+
+def table(rows, separator, decimal=".", head=""):
+    cells = [separator.join(f"{number:.3f}".replace(".", decimal) for number in row) for row in rows]
+    return "\n".join([head] * bool(head) + cells)
+
+
+def npz(save, **arrays):
+    file = io.BytesIO()
+    save(file, **arrays)
+    return file.getvalue()
+
+
+names = ",".join(["time"] + [f"s{at}" for at in range(14)])
+for name, content in [
+    ("npy", npy(timed)), ("npy-big", npy(np.asfortranarray(timed.astype(">f4")))), ("npz", npz(np.savez, a=timed)),
+    ("npz-packed", npz(np.savez_compressed, a=felt)), ("npz-two", npz(np.savez, a=felt, b=timed)),
+    ("comma", table(timed, ",", ".", names).encode()), ("blank", table(felt, " ").encode()),
+    ("german", table(timed, ";", ",", names.replace(",", ";")).encode("utf-16")),
+    ("tab", table(timed, "\t", ",", "# " + names.replace(",", "\t")).encode()),
+    ("date", b"%time,a\n12:00:01,3\n12:00:02,\n"), ("quotes", b'"1,5","2"\r\n"3","4,5"\r\n'),
+]:
+    put("touch", name, b"\0" + content)
+
 LABELS, TREE = b"sensor,part\n0,0\n1,0\n2,1\n3,1\n", b"child,parent\n1,0\n"
 for name, tables in [("good", LABELS + b"\0" + TREE), ("cycle", LABELS + b"\0" + TREE + b"0,1\n"),
                      ("twin", LABELS + b"3,0\n\0" + TREE), ("loop", LABELS + b"\0child,parent\n0,0\n"),

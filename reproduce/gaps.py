@@ -20,7 +20,7 @@ except ModuleNotFoundError:
     sys.exit("gaps: needs NumPy")
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-BODIES, SEEDS = ["star", "quadruped", "paper", "tee"], [4830001, 4830002]
+BODIES, SEEDS = ["star", "tee", "quadruped", "paper"], [4830001, 4830002]
 COLUMNS = ["body", "seed", "gaps", "missing", "sensors_left", "ari", "tree_right"]
 
 
@@ -77,7 +77,7 @@ def main():
     parser = argparse.ArgumentParser(description="Estimate parts and tree of recordings with gaps.")
     parser.add_argument("--out", type=pathlib.Path, default=ROOT / "docs" / "shown" / "gaps", help="folder to write to")
     out = parser.parse_args().out
-    rows = [row for body in BODIES for seed in SEEDS for row in measured(body, seed)]
+    rows = [row for seed in SEEDS for body in BODIES for row in measured(body, seed)]
     out.mkdir(parents=True, exist_ok=True)
     with open(out / "gaps.csv", "w", newline="") as table:
         writer = csv.DictWriter(table, COLUMNS, lineterminator="\n")

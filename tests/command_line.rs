@@ -30,10 +30,12 @@ fn header(text: &str) -> &str {
     text.lines().next().unwrap()
 }
 
-/// Pressures of a body, with a sensor that is dead, one that is constant and one that is missing half of the time, all in the beginning.
+/// Pressures of a body, of which 2 % are missing, with a sensor that is dead, one that is constant and one that is missing half of the
+/// time, all in the beginning.
 fn with_faults(folder: &Folder, tactile: &str, out: &str) {
     let mut tactile = npy::read_tactile(&folder.at(tactile)).unwrap();
     let samples = tactile.samples;
+    tactile.pressures.iter_mut().step_by(53).for_each(|pressure| *pressure = f32::NAN);
     tactile.pressures[..samples].fill(0.0);
     tactile.pressures[samples..2 * samples].fill(7.0);
     tactile.pressures[2 * samples..2 * samples + samples / 2].fill(f32::NAN);
@@ -52,11 +54,14 @@ fn one_command_finds_parts_and_tree() {
     assert!(said.out.contains("5 parts of 117 sensors"), "{said:?}");
     assert!(said.out.contains("adjusted Rand index 1.000, true tree recovered"), "{said:?}");
     assert!(said.err.contains("3 of 120 sensors are left out (the first, 0, is dead)"), "{said:?}");
+    assert!(said.err.contains("(1.89 %) are missing of the sensors that are used; they are not"), "{said:?}");
     let faults: Vec<String> =
         folder.rows("found/dropped.csv").iter().map(|row| row["fault"].clone()).collect();
     assert_eq!(faults, ["dead", "constant", "missing"]);
     assert_eq!(folder.rows("found/parts.csv").len(), 117);
     assert_eq!(folder.rows("found/tree.csv").len(), 4);
+    assert_eq!(folder.text("found/tree.dot").matches(" -- ").count(), 4);
+    assert_eq!(folder.text("found/tree.graphml").matches("<edge ").count(), 4);
     let summary = folder.text("found/summary.json");
     assert!(summary.contains("\"parts\": 5") && summary.contains("\"dropped\": 3"), "{summary}");
     // The parts that were found are parts for `tree`.

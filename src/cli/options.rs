@@ -38,7 +38,7 @@ impl Threads {
 /// A settings file.
 #[derive(Args)]
 pub(super) struct SettingsFile {
-    /// File with the settings that differ from reproduce/paper.toml, which names and explains all of them
+    /// Settings that differ from reproduce/paper.toml, which explains all of them
     #[arg(long, value_name = "FILE")]
     pub settings: Option<PathBuf>,
 }

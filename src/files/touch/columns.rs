@@ -76,8 +76,6 @@ impl Columns {
             left_out[*at] = true;
             intervals.extend(interval);
             if !is_said {
-                // Without the rounding errors of differences.
-                let rounded = |interval: f64| (1e9 * interval).round() / 1e9;
                 let interval =
                     interval.map_or(String::new(), |own| format!(" (interval {} s)", rounded(own)));
                 guesses.push(format!(
@@ -89,6 +87,11 @@ impl Columns {
         let left_out = (0..left_out.len()).filter(|at| left_out[*at]).collect();
         Found { left_out, interval: intervals.first().copied(), guesses }
     }
+}
+
+/// Six digits: without the rounding errors of differences.
+fn rounded(interval: f64) -> f64 {
+    format!("{interval:.5e}").parse().unwrap_or(interval)
 }
 
 /// The place of a column that is given by its name, or else by its number from 1 on.

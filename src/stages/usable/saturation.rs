@@ -13,8 +13,9 @@ const RUN: usize = 3;
 const JUST_BELOW: f32 = 0.9;
 /// Share of the top of the range that its bottom has at least, if that saturates, too. Less is an offset at rest.
 const BOTTOM: f32 = 0.5;
-/// Different values up to which a sensor has levels, such as on and off, and no range.
-const LEVELS: usize = 8;
+/// Different values up to which nothing is known: near a peak, a sensor of few levels stays at the last one for as long as in the tenth
+/// below it. A parabola does so with 40 levels.
+const LEVELS: usize = 40;
 
 /// Replaces saturated values by NaN; how many they are, of each sensor.
 pub(super) fn without_saturated(tactile: &mut Tactile) -> Vec<usize> {
@@ -118,11 +119,14 @@ mod tests {
     fn what_is_not_cut_stays() {
         let whole = touch();
         let rounded: Vec<f32> = whole.iter().map(|pressure| (20.0 * pressure).round()).collect();
+        let coarse: Vec<f32> = whole.iter().map(|pressure| (3.0 * pressure).floor()).collect();
         let levels: Vec<f32> = whole.iter().map(|pressure| pressure.round()).collect();
         let offset: Vec<f32> = whole.iter().map(|pressure| pressure - 0.3).collect();
         let holes: Vec<f32> =
             whole.iter().enumerate().map(|(t, own)| if t % 3 == 0 { f32::NAN } else { *own }).collect();
-        for series in [whole, rounded, levels, offset, holes, vec![0.0; 9], vec![5.0; 9], vec![f32::NAN; 9]] {
+        for series in
+            [whole, rounded, coarse, levels, offset, holes, vec![0.0; 9], vec![5.0; 9], vec![f32::NAN; 9]]
+        {
             let mut own = series.clone();
             assert_eq!(remove(&mut own), 0, "{:?}", &series[..9]);
         }
