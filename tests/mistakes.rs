@@ -142,8 +142,14 @@ fn a_mistake_is_one_line_that_says_what_and_where_and_status_2() {
         ("simulate --out file/s", "file/s: cannot be written to"),
         ("estimate word.csv --out s", "word.csv: row 3, column 2 (`b`): `x` is not a number; empty the cell"),
         ("estimate commas.csv --out s", "row 1, column 2: `05` seems to be the decimals of the cell before"),
-        ("estimate cut.csv --out s", "row 3 has 1 cells, but the first row of numbers has 2; repair or delete"),
-        ("estimate times.csv --out s", "has no column of a sensor; if its columns are no times, say --time none"),
+        (
+            "estimate cut.csv --out s",
+            "row 3 has 1 cells, but the first row of numbers has 2; repair or delete",
+        ),
+        (
+            "estimate times.csv --out s",
+            "has no column of a sensor; if its columns are no times, say --time none",
+        ),
         ("estimate word.csv --time c --out s", "has no column `c`; --time takes a name, or a number"),
         ("tree transposed.npy --parts short.csv --out s", "is it transposed?"),
         ("distance transposed.npy --out d.npy", "is it transposed?"),

@@ -112,11 +112,9 @@ mod tests {
         let text = graphml(&nodes, &links);
         let document = roxmltree::Document::parse(&text).unwrap();
         let named = |name: &str| {
-            document
-                .descendants()
-                .filter(move |node| node.has_tag_name(("http://graphml.graphdrawing.org/xmlns", name)))
+            let space = "http://graphml.graphdrawing.org/xmlns";
+            document.descendants().filter(|node| node.has_tag_name((space, name))).collect::<Vec<_>>()
         };
-        let named = |name: &str| named(name).collect::<Vec<_>>();
         let keys: Vec<_> = named("key").iter().filter_map(|key| key.attribute("id")).collect();
         assert!(named("data").iter().all(|data| keys.contains(&data.attribute("key").unwrap())));
         let ids: Vec<_> = named("node").iter().filter_map(|node| node.attribute("id")).collect();

@@ -39,7 +39,7 @@ fn word<T: From<bool> + Nan>(text: &str) -> Option<T> {
     match text {
         _ if is("true") => Some(T::from(true)),
         _ if is("false") => Some(T::from(false)),
-        _ => MISSING.iter().any(|word| is(word)).then(|| T::NAN),
+        _ => MISSING.iter().any(|word| is(word)).then_some(T::NAN),
     }
 }
 
