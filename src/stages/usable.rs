@@ -236,7 +236,8 @@ mod tests {
     #[test]
     fn saturated_values_are_counted_unless_they_are_kept() {
         let touch = |t: u16| (3.0 * (0.05 * f32::from(t)).sin()).clamp(0.0, 2.0);
-        let tactile = Tactile { samples: 400, pressures: (0..400).map(touch).collect() };
+        let pressures = (0..400).map(touch).chain((0..400_u16).map(f32::from)).collect();
+        let tactile = Tactile { samples: 400, pressures };
         let found = usable(tactile.clone());
         assert!(found.missing.saturated > 100 && found.missing.saturated == found.missing.values);
         assert_eq!(found.missing.saturated_sensors, 1);

@@ -94,12 +94,12 @@ fn rounded(interval: f64) -> f64 {
     format!("{interval:.5e}").parse().unwrap_or(interval)
 }
 
-/// The place of a column that is given by its name, or else by its number from 1 on.
+/// The place of a column that is given by its number from 1 on, as messages count, or by its name.
 fn place(wanted: &str, names: &[String], count: usize) -> Option<usize> {
     let by_name = names.iter().position(|name| name == wanted);
     let by_name = by_name.or_else(|| names.iter().position(|name| name.eq_ignore_ascii_case(wanted)));
     let by_number = || wanted.parse::<usize>().ok()?.checked_sub(1).filter(|at| *at < count);
-    by_name.or_else(by_number)
+    by_number().or(by_name)
 }
 
 fn absent(wanted: &str, option: &str, names: &[String], count: usize) -> String {

@@ -24,12 +24,13 @@ impl Dialect {
             .filter(|row| !row.is_empty() && !row.starts_with(['#', '%']))
             .take(ROWS)
             .collect();
-        // The first may have names, and the last may be cut off.
-        if rows.len() > 2 {
-            rows.remove(0);
+        // The last may be cut off.
+        if rows.len() > 2 && !text.ends_with(['\r', '\n']) {
             rows.pop();
         }
-        let separator = format.separator.unwrap_or_else(|| separator(&rows));
+        // The first may have names, which have any characters.
+        let numbers = if rows.len() > 2 { &rows[1..] } else { &rows[..] };
+        let separator = format.separator.unwrap_or_else(|| separator(numbers));
         let decimal = format.decimal.unwrap_or_else(|| decimal(&rows, separator));
         let is_guess = format.separator.is_none() && separator != Separator::Comma
             || format.decimal.is_none() && decimal == Decimal::Comma;

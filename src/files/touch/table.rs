@@ -89,11 +89,20 @@ impl<'a> Head<'a> {
             self.comment = Some(names);
             return true;
         }
-        if self.names.is_some() || !self.format.header.unwrap_or_else(|| self.has_names(cells)) {
+        if self.names.is_some()
+            || !self.format.header.unwrap_or_else(|| !self.is_named(cells) && self.has_names(cells))
+        {
             return false;
         }
         self.names = Some(names);
         true
+    }
+
+    /// Whether a comment has named the cells of a row that has a number: its words are values, not names.
+    fn is_named(&self, cells: &[&[u8]]) -> bool {
+        let is_number =
+            |cell: &&[u8]| number(cell, self.dialect.decimal).is_some_and(|value| !value.is_nan());
+        self.comment.as_ref().is_some_and(|names| names.len() == cells.len()) && cells.iter().any(is_number)
     }
 
     /// Whether the cells of the first row are names: a cell is neither a number nor a date, or they count the columns.
@@ -122,7 +131,13 @@ impl<'a> Head<'a> {
         let Self { file, dialect, format, .. } = *self;
         let count = cells.len();
         check_sensors(file, count, "many")?;
-        let names = match (self.names.take(), self.comment.take()) {
+        // A separator at the end of every row.
+        let ends_empty = cells.last().is_some_and(|cell| cell.is_empty());
+        let named = self.names.take().map(|mut names| {
+            names.pop_if(|last| last.is_empty() && ends_empty);
+            names
+        });
+        let names = match (named, self.comment.take()) {
             // An empty cell after the last one is none.
             (Some(names), _)
                 if names.len() != count && !(names.len() + 1 == count && cells[count - 1].is_empty()) =>
