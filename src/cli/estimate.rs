@@ -139,7 +139,7 @@ impl Estimate {
         let found = estimate(&recording, &settings.quantise, &mut rng, &|| bar.inc(1))?;
         bar.finish_and_clear();
         let shows_tree = self.force || found.fit.verdict != Verdict::DoesNotFit;
-let against = truth.as_ref().map(|truth| AgainstTruth::new(&found, &recording.truth(truth)));
+        let against = truth.as_ref().map(|truth| AgainstTruth::new(&found, &recording.truth(truth)));
         let summary = write(out, &found, &recording, (interval, seed), shows_tree, against)?;
         say(found.fit.to_string())?;
         if !shows_tree {
