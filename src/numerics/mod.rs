@@ -1,6 +1,7 @@
 //! Numerical tools of all stages: random numbers, logarithms, vector instructions, eigenvalues, clusters, partitions, and ranges of settings.
 
 pub(crate) mod eigen;
+pub mod interrupt;
 pub(crate) mod linkage;
 pub(crate) mod log_sum;
 pub mod partition;

@@ -6,6 +6,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use crate::numerics::interrupt;
 use crate::numerics::rng::Stream;
 use crate::stages::body_map::BodyMap;
 use crate::stages::mixture::assignments::log_densities;
@@ -81,6 +82,7 @@ fn expectation_maximisation(points: &Points, ridge: f64, labels: &[usize]) -> Op
     let mut responsibilities: Vec<Vec<f64>> = (0..clusters).map(member).collect();
     let mut log_likelihood = f64::NEG_INFINITY;
     for _ in 0..MAX_ITERATIONS {
+        interrupt::check();
         let components = maximisation(points, &responsibilities, ridge)?;
         let before = log_likelihood;
         (responsibilities, log_likelihood) = expectation(points, &components);

@@ -12,6 +12,7 @@ use rayon::prelude::*;
 
 use self::tile::{BLOCK, COORDINATES, Lanes, Tile, compare, pull_first, pull_second};
 use super::coordinates::BodyMap;
+use crate::numerics::interrupt;
 use crate::numerics::simd::vectorised;
 use crate::stages::distance::Distances;
 
@@ -45,6 +46,7 @@ impl Guttman {
     /// Moves every point by the Guttman transform; returns raw stress, the sum over pairs of (distance − distance within
     /// the map)², as it was before.
     pub(super) fn step(&mut self) -> f64 {
+        interrupt::check();
         let (tiles, points) = (&self.tiles, &self.points);
         let blocks = points.blocks();
         self.shares.par_iter_mut().enumerate().for_each(|(share, sums)| {

@@ -17,6 +17,7 @@ use serde::{Deserialize, Serialize};
 use super::coordinates::BodyMap;
 use super::guttman::Guttman;
 use super::monotone::Monotone;
+use crate::numerics::interrupt;
 use crate::numerics::simd::vectorised;
 use crate::stages::distance::Distances;
 
@@ -123,6 +124,7 @@ impl<'a> Majorisation<'a> {
     ///
     /// Points that coincide do not move each other, as Borg & Groenen (2005, chapter 8) have it.
     pub fn step(&mut self) {
+        interrupt::check();
         let (n, dims) = (self.map.points(), self.map.dims);
         let (old, disparities) = (Blocks::new(&self.map), self.disparities());
         let mut new = vec![0.0; n * dims];

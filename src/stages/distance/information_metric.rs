@@ -8,6 +8,7 @@ use rayon::prelude::*;
 use super::bit_planes::{self, BitPlanes, TILE};
 use super::runs::{self, Counter, Runs};
 use super::stretches::Stretches;
+use crate::numerics::interrupt;
 use crate::stages::quantise::Symbols;
 
 /// A symmetric matrix of distances with a zero diagonal.
@@ -101,6 +102,7 @@ fn by(counting: &Counting, symbols: &Symbols) -> Distances {
         metric_of_counts(joint, &of_marginals[i], &of_marginals[j], &logarithms)
     };
     let of_tile = |(joint, counter): &mut (Vec<u32>, Counter), tile: &(usize, usize)| -> Vec<f64> {
+        interrupt::check();
         let mut by_pairs = |count: &dyn Fn(usize, usize, &mut [u32])| {
             let of_pair = |(i, j)| {
                 count(i, j, joint);

@@ -4,6 +4,7 @@ use nalgebra::DMatrix;
 use rayon::prelude::*;
 
 use super::correlation::{QuadraticForms, correlation};
+use crate::numerics::interrupt;
 use crate::stages::rigid_parts::MotionSubspace;
 
 /// Weight of a sample at which the whole body hardly moves, in units of its mean square.
@@ -65,6 +66,7 @@ impl Moments {
 
     /// The same over a bootstrap resample that has each block so many times.
     pub(super) fn resampled_correlations(&self, counts: &[usize]) -> DMatrix<f64> {
+        interrupt::check();
         let moments = self.sum(counts);
         let parts = self.starts.len() - 1;
         let length = |part: usize| self.starts[part + 1] - self.starts[part];

@@ -9,6 +9,7 @@ use rand::distr::weighted::WeightedIndex;
 use rand::{Rng, RngExt};
 
 use super::points::Points;
+use crate::numerics::interrupt;
 use crate::numerics::rng::Stream;
 use crate::stages::body_map::BodyMap;
 
@@ -40,6 +41,7 @@ pub(crate) fn lloyd(points: &Points, clusters: usize, rng: &mut impl Rng) -> Par
     let mut labels = Vec::new();
     let mut inertia = 0.0;
     for _ in 0..MAX_ITERATIONS {
+        interrupt::check();
         let nearest = (0..points.count).map(|i| nearest(points.row(i), &centres));
         let (assigned, squares): (Vec<usize>, Vec<f64>) = nearest.unzip();
         inertia = squares.iter().fold(0.0, |sum, square| sum + square);

@@ -7,6 +7,7 @@ use faer::{Mat, MatMut, MatRef};
 use pulp::{Arch, Simd, WithSimd};
 
 use super::regressions::{LANES, Regressions};
+use crate::numerics::interrupt;
 
 /// Roots of some sensors, samples × sensors, whose loadings c and motion w are updated in turn.
 pub(super) struct Als<'a> {
@@ -36,6 +37,7 @@ impl<'a> Als<'a> {
     ///
     /// In: c, sensors × k. In and out: w, samples × k.
     pub(super) fn update_motion(&self, loadings: MatRef<'_, f64>, motion: &mut Mat<f64>) {
+        interrupt::check();
         let loadings = by_row(loadings);
         match motion.ncols() {
             0 => (),

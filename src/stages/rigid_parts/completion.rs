@@ -11,6 +11,7 @@ use rayon::prelude::*;
 
 use super::roots::{Roots, product};
 use crate::numerics::eigen::largest;
+use crate::numerics::interrupt;
 
 /// Largest rank. More than the motions of a body have does no harm.
 const MAX_RANK: usize = 100;
@@ -49,6 +50,7 @@ impl Completion {
         let mut loadings = start(&blocks, rank);
         let (mut momentum, mut step, mut before) = (MOMENTUM[0], 0.0, f64::INFINITY);
         for iteration in 0..ITERATIONS {
+            interrupt::check();
             let next = updated(&mut blocks, loadings.as_ref(), step, samples);
             blocks.par_iter_mut().for_each(|block| block.advance(next.as_ref()));
             step = momentum;

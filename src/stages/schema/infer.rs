@@ -8,6 +8,7 @@ use super::prior::prior;
 use super::sample::Sample;
 use super::settings::{Keep, Model, Sampler, Schema};
 use super::split_merge::{Neighbours, SplitMerge, Target, TreePosterior, tree_given};
+use crate::numerics::interrupt;
 use crate::numerics::rng::{Stream, stream};
 use crate::stages::body_map::BodyMap;
 use crate::stages::mixture::{NormalInverseWishart, Points};
@@ -151,6 +152,7 @@ fn run_chain(
 ) -> Result<Vec<Sample>, InferenceError> {
     let mut draws = Vec::new();
     for sweep in 1..=settings.sweeps {
+        interrupt::check();
         state.sweep(rng)?;
         let keep = match settings.keep {
             Keep::Last => sweep == settings.sweeps,
