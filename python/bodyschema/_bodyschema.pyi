@@ -1,0 +1,41 @@
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+BODIES: list[str]
+REVISION: str
+SEED: int
+
+_Tell = Callable[[int], Any] | None
+
+def read_touch(path: str, jobs: int) -> NDArray[np.float32]: ...
+def estimate(
+    touch: NDArray[np.float32] | NDArray[np.float64], unsigned: bool, seed: int, jobs: int, progress: _Tell
+) -> dict[str, Any]: ...
+def tree(
+    touch: NDArray[np.float32] | NDArray[np.float64],
+    labels: list[int],
+    rank: int | None,
+    seed: int,
+    jobs: int,
+    progress: _Tell,
+) -> dict[str, Any]: ...
+def simulate(name: str | None, changes: str, seed: int, jobs: int, progress: _Tell) -> dict[str, Any]: ...
+def quantise(touch: NDArray[np.float32] | NDArray[np.float64], changes: str, jobs: int) -> NDArray[np.uint8]: ...
+def information_metric(symbols: NDArray[np.uint8], jobs: int) -> NDArray[np.float64]: ...
+def body_map(distances: NDArray[np.float64], dims: int, changes: str, seed: int, jobs: int) -> NDArray[np.float64]: ...
+def infer(
+    points: NDArray[np.float64], latent_joints: bool, changes: str, seed: int, jobs: int, progress: _Tell
+) -> dict[str, Any]: ...
+def cluster(
+    points: NDArray[np.float64], method: str, clusters: int, restarts: int, seed: int, jobs: int
+) -> NDArray[np.int64]: ...
+def score(
+    labels: list[int],
+    tree: list[tuple[int, int]],
+    true_labels: list[int],
+    true_tree: list[tuple[int, int]],
+    eligible_ari: float,
+) -> tuple[float, bool, bool]: ...

@@ -1,0 +1,428 @@
+"""Estimate parts and tree of one's own recording."""
+
+from __future__ import annotations
+
+import errno
+import os
+import warnings
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Optional, Union
+
+import numpy as np
+
+from . import _bodyschema, _picture
+from ._arguments import Progress, RandomState, count_of, jobs_of, labels_of, matrix_of, number_of, progress_of, seed_of
+
+SHAPE = "a row for each sample in time, a column for each sensor"
+
+
+class RecordingWarning(UserWarning):
+    """Something about a recording that its owner should know: what was left out, or that the method does not fit it."""
+
+
+@dataclass(frozen=True)
+class Fit:
+    """How well rigid parts explain a recording. Look at it before anything else.
+
+    Attributes
+    ----------
+    verdict : {"good", "doubtful", "does not fit"}
+        Whether they do. If it is "does not fit", parts and tree mean nothing.
+    explained : float
+        The share of sensors that the motion of a part explains, 0 to 1. From 0.8 on the verdict is good, from 0.65 on doubtful.
+    cause : str or None
+        What is likely to be the matter, unless the verdict is good.
+    """
+
+    verdict: str
+    explained: float
+    cause: Optional[str]
+
+    def __str__(self) -> str:
+        cause = f"; likely cause: {self.cause}" if self.cause else ""
+        return f"fit: {self.verdict}: rigid motions explain {100 * self.explained:.0f} % of the sensors{cause}"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Joints:
+    """How known parts are joined: K parts, K − 1 joints.
+
+    Attributes
+    ----------
+    labels : ndarray of shape (K,), int64
+        The labels of the parts, rising.
+    ranks : ndarray of shape (K,), int64
+        Rank of the motion subspace of each part: how many of the six numbers of its velocity and angular velocity it feels. Above
+        six where a face brings a motion of its own.
+    tree : ndarray of shape (K − 1, 2), int64
+        The joints, as (child, parent). Touch does not tell which part is the root.
+    support : ndarray of shape (K − 1,), float64
+        Bootstrap support of each joint, 0 to 1, given the parts.
+    pairs : ndarray of shape (K (K − 1) / 2, 2), int64
+        All pairs of parts.
+    pair_correlation, pair_support : ndarray of shape (K (K − 1) / 2,), float64
+        Canonical correlation of the speed of a joint between the two parts, and its bootstrap support, each 0 to 1.
+    dropped : dict of int to str
+        Sensors that were left out, and why.
+    """
+
+    labels: np.ndarray
+    ranks: np.ndarray
+    tree: np.ndarray
+    support: np.ndarray
+    pairs: np.ndarray
+    pair_correlation: np.ndarray
+    pair_support: np.ndarray
+    dropped: Mapping[int, str]
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__}: {len(self.labels)} parts, {len(self.tree)} joints>"
+
+    def __str__(self) -> str:
+        return "\n".join(_picture.text_tree(self.labels, self.tree, self.support, self._name))
+
+    def _name(self, part: int) -> str:
+        rank = dict(zip(self.labels.tolist(), self.ranks.tolist())).get(part, 0)
+        return f"part {part} (motion of rank {rank})"
+
+    def _nodes(self) -> dict[int, dict[str, Any]]:
+        return {part: {"rank": rank} for part, rank in zip(self.labels.tolist(), self.ranks.tolist())}
+
+    def to_networkx(self) -> Any:
+        """The tree as an undirected `networkx.Graph`.
+
+        Returns
+        -------
+        networkx.Graph
+            A node for each part, with `rank`, and of an `Estimate` with `sensors` (list of int) and `residual` (median); an edge
+            for each joint, with `support` and `correlation`.
+
+        Raises
+        ------
+        ImportError
+            If networkx is not installed.
+        """
+        try:
+            import networkx
+        except ImportError:
+            raise ImportError("to_networkx needs networkx: pip install networkx") from None
+        graph = networkx.Graph()
+        graph.add_nodes_from(self._nodes().items())
+        correlations = {frozenset(pair): c for pair, c in zip(self.pairs.tolist(), self.pair_correlation.tolist())}
+        for (child, parent), support in zip(self.tree.tolist(), self.support.tolist()):
+            graph.add_edge(child, parent, support=support, correlation=correlations[frozenset((child, parent))])
+        return graph
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Estimate(Joints):
+    """The estimated parts and tree of a recording of M sensors; what `estimate` returns.
+
+    `print(found)` shows it as text, and a notebook shows a picture. It has what `Joints` has, and what follows.
+
+    Attributes
+    ----------
+    fit : Fit
+        How well rigid parts explain the recording.
+    parts : ndarray of shape (M,), int64
+        The part of each sensor, 0 to K − 1; −1 for one that was left out.
+    residuals : ndarray of shape (M,), float64
+        The share of its residual variance that the motion of its part does not explain, 0 to 1; NaN for a sensor that was left out.
+    next_parts, next_residuals : ndarray of shape (M,), int64 and float64
+        The next best part, and its residual; −1 and NaN where there is none. Where both residuals are near to each other, the
+        part of the sensor is uncertain.
+    samples : ndarray of shape (T,), int64
+        Samples that were used, as the recording counts them. A sample at which most sensors have no value is left out.
+    noisy : int
+        How many sensors are noisy, and were smoothed.
+    signed : bool
+        Whether negative values count.
+    interval : float or None
+        Time between two samples, s.
+    seed : int
+        Seed of the bootstrap.
+    mapped : ndarray of shape (N,), int64
+        Sensors that have distances, at most 800, spread over all.
+    distances : ndarray of shape (N, N), float64
+        The information metric between them, bits; `body_map` takes it.
+    shows_tree : bool
+        Whether there is a tree: rigid parts explain the recording, or it was forced. Otherwise `tree` and `support` are empty.
+    """
+
+    fit: Fit
+    parts: np.ndarray
+    residuals: np.ndarray
+    next_parts: np.ndarray
+    next_residuals: np.ndarray
+    samples: np.ndarray
+    noisy: int
+    signed: bool
+    interval: Optional[float]
+    seed: int
+    mapped: np.ndarray
+    distances: np.ndarray
+    shows_tree: bool
+
+    def sensors_of(self, part: int) -> np.ndarray:
+        """The sensors on a part, rising."""
+        return np.flatnonzero(self.parts == part)
+
+    def __repr__(self) -> str:
+        sensors = int((self.parts >= 0).sum())
+        return f"<Estimate: {len(self.labels)} parts of {sensors} sensors, fit: {self.fit.verdict}>"
+
+    def __str__(self) -> str:
+        sensors = int((self.parts >= 0).sum())
+        time = "" if self.interval is None else f" ({len(self.samples) * self.interval:g} s)"
+        lines = [str(self.fit), f"{len(self.labels)} parts of {sensors} sensors over {len(self.samples)} samples{time}"]
+        if not self.shows_tree:
+            lines.append("no tree is shown; estimate(..., force=True) has it")
+            return "\n".join(lines)
+        if len(self.tree) > 0:
+            lines.append("tree, with the bootstrap support of each joint (given the parts):")
+        lines.extend(_picture.text_tree(self.labels, self.tree, self.support, self._name))
+        if len(self.labels) == 1:
+            residual = float(np.nanmean(self.residuals))
+            still = "; no joint seems to move" if residual < 0.05 else ""
+            lines.append(
+                f"no two parts can be distinguished: the residual variance of a single rigid motion is {100 * residual:.1f} %{still}"
+            )
+        return "\n".join(lines)
+
+    def _name(self, part: int) -> str:
+        node = self._nodes()[part]
+        return f"part {part} ({len(node['sensors'])} sensors, motion of rank {node['rank']})"
+
+    def _nodes(self) -> dict[int, dict[str, Any]]:
+        nodes = super()._nodes()
+        for part, node in nodes.items():
+            sensors = self.sensors_of(part)
+            node["sensors"] = sensors.tolist()
+            node["residual"] = float(np.median(self.residuals[sensors])) if len(sensors) > 0 else float("nan")
+        return nodes
+
+    def to_networkx(self) -> Any:
+        if not self.shows_tree:
+            raise ValueError(f"there is no tree, since rigid parts do not explain the recording ({self.fit}); force=True makes one")
+        return super().to_networkx()
+
+    to_networkx.__doc__ = Joints.to_networkx.__doc__
+
+    def _repr_html_(self) -> str:
+        return _picture.page(self)
+
+
+def read_touch(path: Union[str, os.PathLike]) -> np.ndarray:
+    """Read a recording from a file, as the command line does.
+
+    Parameters
+    ----------
+    path : str or path
+        A `.npy` or `.csv` file: a row for each sample in time, a column for each sensor.
+
+    Returns
+    -------
+    ndarray of shape (T, M), float32
+        The pressures; NaN where there is no value.
+
+    Raises
+    ------
+    FileNotFoundError
+        If there is no such file.
+    ValueError
+        If it is no table of numbers; the message names the row and the column.
+    """
+    path = os.fspath(path)
+    if not os.path.exists(path):
+        raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), path)
+    return _bodyschema.read_touch(path, jobs_of(-1))
+
+
+def touch_of(touch: Any) -> np.ndarray:
+    """A recording, T × M float32 or float64, from a file or anything that NumPy takes for an array."""
+    if isinstance(touch, (str, os.PathLike)):
+        return read_touch(touch)
+    array = matrix_of(touch, "touch", SHAPE)
+    if array.shape[0] > 2 and array.shape[1] > 0 and bool(np.all(array[1:, 0] > array[:-1, 0])):
+        raise ValueError("column 0 of touch rises with every row, as a time does and no sensor: leave it out, touch[:, 1:]")
+    return array
+
+
+def estimate(
+    touch: Any,
+    interval: Optional[float] = None,
+    signed: Optional[bool] = None,
+    *,
+    force: bool = False,
+    random_state: RandomState = None,
+    n_jobs: Optional[int] = -1,
+    progress: Progress = None,
+) -> Estimate:
+    """Estimate the rigid parts of a body, the part of each sensor, and the tree of joints, from touch alone.
+
+    The method assumes rigid parts, and sensors that feel how fast they move outward through a fluid or air: their pressure grows with
+    the square of that speed. Contact does not fit. `Estimate.fit` says whether a recording fits; look at it first.
+
+    Parameters
+    ----------
+    touch : array-like of shape (T, M), or the path of a file
+        Pressures of M sensors at T samples, in any unit; 12 to 20,000 sensors. NaN where there is no value. The path of a `.npy`
+        or `.csv` file will do. A float32 or float64 array is read where it is, in any order of memory, and is not changed.
+    interval : float, optional
+        Time between two samples, s. It only labels the time.
+    signed : bool, optional
+        Whether negative values count. By default they do if they are more than 1 % of the sum of all absolute values. False takes
+        each negative value for 0. True makes sure that they count.
+    force : bool, default False
+        Give the tree even if rigid parts do not explain the recording.
+    random_state : int, NumPy generator or None
+        Seed of the bootstrap, from 0 to 2**64 − 1. None is `bodyschema.SEED`, as on the command line.
+    n_jobs : int or None, default -1
+        Number of threads; -1: all processors, None: one. The result does not depend on it.
+    progress : bool, callable or None
+        True shows a progress bar if tqdm is installed, and None does so on a terminal or in a notebook. A function is called with the
+        number of steps that are done, and of all.
+
+    Returns
+    -------
+    Estimate
+        Parts, tree, bootstrap support, residuals and fit.
+
+    Raises
+    ------
+    ValueError
+        If `touch` is no table of numbers, or fewer than 12 of its sensors feel anything usable.
+    FileNotFoundError
+        If it is a path that leads nowhere.
+
+    Warns
+    -----
+    RecordingWarning
+        If sensors or samples were left out, sensors are noisy, or rigid parts do not explain the recording.
+
+    Notes
+    -----
+    Sensors are clustered by the motion subspaces of rigid parts, in the way of motion segmentation (Costeira and Kanade 1998). Parts
+    are joined by the maximum spanning tree of the canonical correlations of joint speeds; support is that of Felsenstein's bootstrap
+    (1985). docs/estimate.md has the theory and how often the result is right. This is an extension: it is not in the paper.
+
+    Examples
+    --------
+    >>> import bodyschema
+    >>> moved = bodyschema.simulate("chain-3", duration=100, coordination=0.0, random_state=1)
+    >>> found = bodyschema.estimate(moved.touch, interval=moved.interval)
+    >>> found.fit.verdict
+    'good'
+    >>> found.parts.shape == (moved.touch.shape[1],)
+    True
+    """
+    if interval is not None and number_of(interval, "interval") <= 0:
+        raise ValueError(f"interval must be a time above 0, in s, but is {interval!r}")
+    if signed not in (None, True, False):
+        raise ValueError(f"signed must be True, False or None, but is {signed!r}")
+    seed, jobs, array = seed_of(random_state), jobs_of(n_jobs), touch_of(touch)
+    with progress_of(progress, 3, "estimate") as tell:
+        facts = _bodyschema.estimate(array, signed is not None and not signed, seed, jobs, tell)
+    if signed and not facts["signed"]:
+        raise ValueError(
+            "signed is True, but negative values are less than 1 % of the sum of all absolute values; leave it out for sensors that "
+            "feel nothing while they move inward"
+        )
+    verdict, sensors, all_sensors = facts["verdict"], facts["sensors"], array.shape[1]
+    fit = Fit(verdict, facts["explained"], facts["cause"])
+    _warn(facts, all_sensors)
+    shows_tree = force or facts["fits"]
+    if not facts["fits"]:
+        note = "parts and tree mean nothing" if shows_tree else "parts mean nothing, and no tree is given (force=True does)"
+        warnings.warn(f"{fit}; {note}", RecordingWarning, stacklevel=2)
+
+    def of_all(values: np.ndarray, missing: float) -> np.ndarray:
+        all_values = np.full(all_sensors, missing, dtype=values.dtype)
+        all_values[sensors] = values
+        return all_values
+
+    return Estimate(
+        **_joined(facts, shows_tree),
+        fit=fit,
+        parts=of_all(facts["parts"], -1),
+        residuals=of_all(facts["residuals"], np.nan),
+        next_parts=of_all(facts["next_parts"], -1),
+        next_residuals=of_all(facts["next_residuals"], np.nan),
+        samples=facts["samples"],
+        noisy=facts["noisy"],
+        signed=facts["signed"],
+        interval=None if interval is None else float(interval),
+        seed=seed,
+        mapped=facts["mapped"],
+        distances=facts["distances"],
+        shows_tree=shows_tree,
+    )
+
+
+def estimate_tree(
+    touch: Any,
+    parts: Any,
+    *,
+    rank: Optional[int] = None,
+    random_state: RandomState = None,
+    n_jobs: Optional[int] = -1,
+) -> Joints:
+    """Estimate how known parts are joined. Where the parts are known, this is far more reliable than `estimate`.
+
+    Parameters
+    ----------
+    touch : array-like of shape (T, M), or the path of a file
+        Pressures, as for `estimate`.
+    parts : array-like of shape (M,), int
+        The part of each sensor, any whole number; −1 leaves a sensor out.
+    rank : int, optional
+        Rank of the motion subspace of each part, 1 to 6. By default the data choose one for each.
+    random_state, n_jobs
+        As for `estimate`.
+
+    Returns
+    -------
+    Joints
+        The tree and its bootstrap support.
+
+    Raises
+    ------
+    ValueError
+        If `touch` is no table of numbers, there is not a part for each sensor, or no sensor that has one feels anything.
+
+    Notes
+    -----
+    It is `bodyschema tree` of the command line; docs/estimate.md has the theory.
+    """
+    seed, jobs, array = seed_of(random_state), jobs_of(n_jobs), touch_of(touch)
+    labels = labels_of(parts, "parts", -1)
+    facts = _bodyschema.tree(array, labels.tolist(), None if rank is None else count_of(rank, "rank"), seed, jobs, None)
+    _warn(facts, array.shape[1])
+    return Joints(**_joined(facts, True))
+
+
+def _joined(facts: Mapping[str, Any], shows_tree: bool) -> dict[str, Any]:
+    names = ["labels", "ranks", "pairs", "pair_correlation", "pair_support"]
+    joints = {name: facts[name] for name in names}
+    joints["tree"] = facts["tree"] if shows_tree else np.empty((0, 2), dtype=np.int64)
+    joints["support"] = facts["support"] if shows_tree else np.empty(0)
+    joints["dropped"] = dict(facts["dropped"])
+    return joints
+
+
+def _warn(facts: Mapping[str, Any], sensors: int) -> None:
+    """Says what cleaning changed."""
+
+    def warn(message: str) -> None:
+        warnings.warn(message, RecordingWarning, stacklevel=4)
+
+    if facts["lost_samples"] > 0:
+        warn(f"{facts['lost_samples']} samples are left out, because most sensors have no value there")
+    if facts["noisy"] > 0:
+        warn(
+            f"{facts['noisy']} of {len(facts['sensors'])} sensors are noisy; they are smoothed, and pressures within the noise count as no touch"
+        )
+    if facts["dropped"]:
+        first, fault = facts["dropped"][0]
+        warn(f"{len(facts['dropped'])} of {sensors} sensors are left out (the first, {first}, is {fault}); see dropped")

@@ -1,0 +1,141 @@
+//! Estimate parts and tree of one's own recording, as the command line does.
+
+use std::path::PathBuf;
+
+use bodyschema::estimate::{Estimate, TooFewSensors, Verdict, estimate as estimate_of};
+use bodyschema::files::touch;
+use bodyschema::numerics::rng::stream;
+use bodyschema::recording::Recording;
+use bodyschema::settings::{Base, Settings};
+use bodyschema::stages::joints::{Joints, Pair, joints};
+use numpy::{IntoPyArray, PyArray2};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::arrays::{self, by_rows, by_series, check_sensors, edges, ends, value_error, whole};
+use crate::run::{Steps, Threads};
+
+/// Reads a recording as `bodyschema estimate` does: T × M, float32, NaN where there is no value.
+#[pyfunction]
+pub(crate) fn read_touch(py: Python<'_>, path: PathBuf, jobs: usize) -> PyResult<Bound<'_, PyArray2<f32>>> {
+    let threads = Threads::start(jobs)?;
+    let tactile = threads.run(py, None, move |_| touch::read_touch(&path))?.map_err(value_error)?;
+    by_series(py, tactile.samples, tactile.pressures)
+}
+
+/// `bodyschema estimate`. `unsigned` takes negative pressures for 0.
+#[pyfunction]
+#[pyo3(signature = (touch, unsigned, seed, jobs, progress))]
+pub(crate) fn estimate<'py>(
+    py: Python<'py>,
+    touch: &Bound<'py, PyAny>,
+    unsigned: bool,
+    seed: u64,
+    jobs: usize,
+    progress: Option<&Bound<'py, PyAny>>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let threads = Threads::start(jobs)?;
+    let mut tactile = arrays::touch(&threads, touch)?;
+    let levels = Settings::load_over(Some(Base::ESTIMATE), None).map_err(value_error)?.quantise;
+    let work = move |steps: &Steps| {
+        if unsigned {
+            // NaN stays.
+            let negative = tactile.pressures.iter_mut().filter(|pressure| **pressure < 0.0);
+            negative.for_each(|pressure| *pressure = 0.0);
+        }
+        let recording = Recording::new(tactile);
+        let rng = &mut stream(seed, 1, "co-motion", 0);
+        let found = estimate_of(&recording, &levels, rng, &|| steps.tick())?;
+        Ok((recording, found))
+    };
+    let outcome = threads.run(py, progress, work)?;
+    let (recording, found) = outcome.map_err(|error: TooFewSensors| value_error(error))?;
+    let facts = PyDict::new(py);
+    cleaned(&facts, &recording)?;
+    let Estimate { fit, parts, joints, mapped, distances } = found;
+    facts.set_item("verdict", fit.verdict.to_string())?;
+    facts.set_item("fits", fit.verdict != Verdict::DoesNotFit)?;
+    facts.set_item("explained", fit.explained)?;
+    facts.set_item("cause", fit.cause)?;
+    let (others, left): (Vec<i64>, Vec<f64>) = parts
+        .alternatives
+        .iter()
+        .map(|others| others.first().map_or((-1, f64::NAN), |&(part, residual)| (part as i64, residual)))
+        .unzip();
+    facts.set_item("parts", whole(parts.labels).into_pyarray(py))?;
+    facts.set_item("residuals", parts.residuals.into_pyarray(py))?;
+    facts.set_item("next_parts", others.into_pyarray(py))?;
+    facts.set_item("next_residuals", left.into_pyarray(py))?;
+    joined(&facts, &joints)?;
+    facts.set_item("mapped", whole(mapped.iter().map(|&at| recording.sensors[at])).into_pyarray(py))?;
+    facts.set_item("distances", by_rows(py, distances.sensors, distances.values)?)?;
+    Ok(facts)
+}
+
+/// `bodyschema tree`: labels of −1 are of no part.
+#[pyfunction]
+#[pyo3(signature = (touch, labels, rank, seed, jobs, progress))]
+pub(crate) fn tree<'py>(
+    py: Python<'py>,
+    touch: &Bound<'py, PyAny>,
+    labels: Vec<i64>,
+    rank: Option<usize>,
+    seed: u64,
+    jobs: usize,
+    progress: Option<&Bound<'py, PyAny>>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let threads = Threads::start(jobs)?;
+    let tactile = arrays::touch(&threads, touch)?;
+    if labels.len() != tactile.sensors() {
+        return Err(value_error(format!(
+            "parts has {} entries, but touch has {} sensors",
+            labels.len(),
+            tactile.sensors()
+        )));
+    }
+    if rank.is_some_and(|rank| !(1..=6).contains(&rank)) {
+        return Err(value_error("rank must be 1 to 6"));
+    }
+    let known: Vec<Option<usize>> = labels.into_iter().map(|label| usize::try_from(label).ok()).collect();
+    let work = move |_: &Steps| {
+        let recording = Recording::new(tactile);
+        let own = recording.of_sensors(&known);
+        let feels = own.iter().any(Option::is_some);
+        let rng = &mut stream(seed, 1, "co-motion", 0);
+        (feels.then(|| joints(&recording.tactile, &own, rank, rng)), recording)
+    };
+    let (found, recording) = threads.run(py, progress, work)?;
+    let found = found.ok_or_else(|| value_error("no sensor that has a part feels anything"))?;
+    let facts = PyDict::new(py);
+    cleaned(&facts, &recording)?;
+    joined(&facts, &found)?;
+    Ok(facts)
+}
+
+/// What became of sensors and samples.
+fn cleaned(facts: &Bound<'_, PyDict>, recording: &Recording) -> PyResult<()> {
+    let py = facts.py();
+    check_sensors(recording.tactile.samples, recording.all_sensors())?;
+    facts.set_item("sensors", whole(recording.sensors.iter().copied()).into_pyarray(py))?;
+    facts.set_item("samples", whole(recording.samples.iter().copied()).into_pyarray(py))?;
+    let dropped: Vec<(usize, String)> =
+        recording.dropped.iter().map(|(sensor, fault)| (*sensor, fault.to_string())).collect();
+    facts.set_item("dropped", dropped)?;
+    facts.set_item("lost_samples", recording.lost_samples)?;
+    facts.set_item("noisy", recording.noisy)?;
+    facts.set_item("signed", recording.signed)
+}
+
+/// How parts are joined.
+fn joined(facts: &Bound<'_, PyDict>, joints: &Joints) -> PyResult<()> {
+    let py = facts.py();
+    let support: Vec<f64> = joints.tree.iter().map(|edge| joints.support(edge)).collect();
+    facts.set_item("labels", whole(joints.ranks.keys().copied()).into_pyarray(py))?;
+    facts.set_item("ranks", whole(joints.ranks.values().copied()).into_pyarray(py))?;
+    facts.set_item("tree", edges(py, joints.tree.iter().map(ends))?)?;
+    facts.set_item("support", support.into_pyarray(py))?;
+    let numbers = |number: fn(&Pair) -> f64| -> Vec<f64> { joints.pairs.iter().map(number).collect() };
+    facts.set_item("pairs", edges(py, joints.pairs.iter().map(|pair| (pair.part, pair.other)))?)?;
+    facts.set_item("pair_correlation", numbers(|pair| pair.correlation).into_pyarray(py))?;
+    facts.set_item("pair_support", numbers(|pair| pair.support).into_pyarray(py))
+}

@@ -1,0 +1,113 @@
+"""The numbers are those of the command line, bit for bit."""
+
+import json
+
+import numpy as np
+import pytest
+from conftest import same
+
+import bodyschema
+
+SEED = 2**63 + 5  # more than a file of settings can have
+
+
+def table(path):
+    return np.genfromtxt(path, delimiter=",", names=True, dtype=None, encoding="utf-8", ndmin=1)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory, command, small_body):
+    folder = tmp_path_factory.mktemp("simulated")
+    (folder / "short.toml").write_text("[motion]\ncoordination = 0.0\n")
+    command("simulate", "--body", small_body, "--settings", folder / "short.toml", "--duration", 100, "--seed", 1, "--out", folder)
+    return folder
+
+
+def test_simulate(folder, moved):
+    assert same(np.load(folder / "tactile.npy"), moved.touch)
+    assert table(folder / "labels.csv")["part"].tolist() == moved.parts.tolist()
+    assert [list(row) for row in table(folder / "tree.csv").tolist()] == moved.tree.tolist()
+
+
+@pytest.mark.parametrize("kind", ["plain", "gaps", "signed", "float64"])
+def test_estimate(folder, tmp_path, command, moved, kind):
+    touch = moved.touch.copy()
+    if kind == "gaps":
+        touch[40], touch[:, 3], touch[7, 5] = np.nan, 0, np.inf
+    elif kind == "signed":
+        touch -= np.roll(touch, 1, axis=1)
+    elif kind == "float64":
+        touch = touch.astype(np.float64) * np.pi
+    np.save(tmp_path / "touch.npy", touch)
+    command("estimate", tmp_path / "touch.npy", "--seed", SEED, "--force", "--out", tmp_path / "found")
+    with pytest.warns(bodyschema.RecordingWarning) if kind != "plain" and kind != "float64" else _nothing():
+        found = bodyschema.estimate(touch, random_state=SEED, force=True)
+    summary = json.loads((tmp_path / "found/summary.json").read_text())
+    facts = [found.fit.verdict, found.fit.explained, len(found.samples), len(found.labels), found.noisy, found.signed, found.seed]
+    assert facts == [summary[name] for name in ["fit", "explained", "samples", "parts", "noisy", "signed", "seed"]]
+    rows = table(tmp_path / "found/parts.csv")
+    own = rows["sensor"]
+    assert np.flatnonzero(found.parts >= 0).tolist() == own.tolist()
+    assert found.parts[own].tolist() == rows["part"].tolist()
+    assert found.residuals[own].tobytes() == rows["residual"].tobytes()
+    assert found.next_parts[own].tolist() == rows["next_part"].tolist()
+    assert found.next_residuals[own].tobytes() == rows["next_residual"].tobytes()
+    dropped = table(tmp_path / "found/dropped.csv") if found.dropped else np.empty(0)
+    assert list(found.dropped.items()) == dropped.tolist()
+    tree = table(tmp_path / "found/tree.csv")
+    assert found.tree.tolist() == [[row["child"], row["parent"]] for row in tree]
+    assert found.support.tobytes() == tree["support"].tobytes()
+    pairs = table(tmp_path / "found/edges.csv")
+    assert found.pairs.tolist() == [[row["part"], row["other"]] for row in pairs]
+    assert found.pair_correlation.tobytes() == pairs["correlation"].tobytes()
+    assert found.pair_support.tobytes() == pairs["support"].tobytes()
+
+
+def test_a_file_is_read_as_the_command_line_reads_it(folder, tmp_path, moved, found):
+    assert same(bodyschema.estimate(folder / "tactile.npy", interval=moved.interval), found)
+    np.savetxt(tmp_path / "touch.csv", moved.touch, delimiter=",", header=",".join(["a"] * moved.touch.shape[1]), comments="", fmt="%.9g")
+    assert same(bodyschema.read_touch(tmp_path / "touch.csv"), moved.touch)
+
+
+def test_the_tree_over_known_parts(folder, tmp_path, command, moved):
+    command("tree", folder / "tactile.npy", "--parts", folder / "labels.csv", "--seed", SEED, "--out", tmp_path)
+    joints = bodyschema.estimate_tree(moved.touch, moved.parts, random_state=SEED)
+    tree, pairs = table(tmp_path / "tree.csv"), table(tmp_path / "edges.csv")
+    assert joints.tree.tolist() == [[row["child"], row["parent"]] for row in tree]
+    assert joints.support.tobytes() == tree["support"].tobytes()
+    assert joints.pair_correlation.tobytes() == pairs["correlation"].tobytes()
+
+
+def test_the_stages_of_the_paper(folder, tmp_path, command, moved):
+    command("distance", folder / "tactile.npy", "--out", tmp_path / "distance.npy")
+    distances = bodyschema.information_metric(bodyschema.quantise(moved.touch))
+    assert same(np.load(tmp_path / "distance.npy"), distances)
+    for method in ["classical", "smacof-random", "nonmetric"]:
+        command("map", tmp_path / "distance.npy", "--dims", 3, "--method", method, "--seed", SEED, "--out", tmp_path / "map.npy")
+        map_ = bodyschema.body_map(distances, 3, method=method, random_state=SEED)
+        assert same(np.load(tmp_path / "map.npy"), map_)
+    for model, sampler, run in [
+        ("dpgmm-lj", "equations", bodyschema.dpgmm_lj),
+        ("dpgmm-lj", "split-merge", bodyschema.dpgmm_lj),
+        ("dpgmm", "authors-code", bodyschema.dpgmm),
+    ]:
+        sizes = ["--chains", 3, "--sweeps", 20, "--burn-in", 5]
+        command("infer", tmp_path / "map.npy", "--model", model, "--sampler", sampler, *sizes, "--seed", SEED, "--out", tmp_path / "out")
+        settings = {"schema": {"sampler": sampler, "burn_in": 5}}
+        posterior = run(map_, n_chains=3, n_sweeps=20, settings=settings, random_state=SEED)
+        rows = table(tmp_path / "out/samples.csv")
+        assert posterior.log_posterior.tobytes() == rows["log_posterior"].tobytes()
+        assert posterior.chain.tolist() == rows["chain"].tolist()
+        assert posterior.n_parts.tolist() == rows["parts"].tolist()
+        if sampler != "split-merge":  # whose components the command line names after the consensus
+            assert same(np.load(tmp_path / "out/assignments.npy"), posterior.labels)
+            trees = [[row["child"], row["parent"]] for row in table(tmp_path / "out/trees.csv")]
+            assert np.concatenate(posterior.trees).tolist() == trees
+
+
+class _nothing:
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        return False
