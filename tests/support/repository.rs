@@ -31,6 +31,7 @@ pub fn pages() -> Vec<PathBuf> {
         "CHANGELOG.md",
         "tests/README.md",
         "benches/README.md",
+        "python/README.md",
         "docs/shown/claims.md",
     ];
     let docs = entries("docs")
