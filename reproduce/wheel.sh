@@ -25,10 +25,10 @@ python3 -m venv "$work/tools"
 PATH=$work/tools/bin:$PATH
 
 # The licences of what the wheel will carry: of libode and what it needs, as Debian has them, and of crates.
-engine=$(ldconfig -p | awk '/libode\.so\.[0-9]/ { print $NF; exit }')
+engine=$(ldconfig -p | awk '/libode\.so\.[0-9]/ && !found { print $NF; found = 1 }')
 [ -n "$engine" ] || fail "the physics engine is no library of the system; its licence is not known"
 for library in "$engine" $(ldd "$engine" | awk '/libccd/ { print $3 }'); do
-    package=$(dpkg-query --search "$(readlink -f "$library")" "/usr${library#/usr}" 2>/dev/null | head -n 1 | cut -d : -f 1)
+    package=$(dpkg-query --search "$(readlink -f "$library")" "/usr${library#/usr}" 2>/dev/null | sed -n "1s/:.*//p")
     text=/usr/share/doc/$package/copyright
     [ -n "$package" ] && [ -f "$text" ] || fail "$library: its licence is not known"
     cp "$text" "$licences/debian-$package.txt"
@@ -38,7 +38,7 @@ python3 "$root/python/licences.py" "$licences/rust-crates.txt"
 
 # A wheel that links to the system's engine, and then one that has it.
 (cd "$root" && CARGO_TARGET_DIR=${CARGO_TARGET_DIR:-$root/target} maturin build --release --locked --quiet --auditwheel skip --out "$work/plain")
-auditwheel --quiet repair --wheel-dir "$work/whole" "$work"/plain/*.whl 2>"$work/log" || {
+auditwheel repair --wheel-dir "$work/whole" "$work"/plain/*.whl >"$work/log" 2>&1 || {
     cat "$work/log" >&2
     fail "auditwheel could not put the engine into the wheel"
 }

@@ -29,7 +29,7 @@ def seed_of(random_state: RandomState) -> int:
     if isinstance(random_state, np.random.RandomState):
         return int(random_state.randint(2**31 - 1))
     if isinstance(random_state, numbers.Integral) and not isinstance(random_state, bool):
-        if 0 <= random_state < 2**64:
+        if 0 <= int(random_state) < 2**64:
             return int(random_state)
     raise ValueError(
         f"random_state must be a whole number from 0 to 2**64 - 1, a NumPy generator or None, but is {random_state!r}"
@@ -37,13 +37,15 @@ def seed_of(random_state: RandomState) -> int:
 
 
 def jobs_of(n_jobs: Optional[int]) -> int:
-    """The number of threads, counted as scikit-learn does."""
+    """The number of threads, counted as scikit-learn does; 0 for as many as the command line takes."""
     if n_jobs is None:
         return 1
     if not isinstance(n_jobs, numbers.Integral) or isinstance(n_jobs, bool) or n_jobs == 0 or n_jobs > MAX_JOBS:
         raise ValueError(f"n_jobs must be None, 1 to {MAX_JOBS}, or negative (-1: all processors), but is {n_jobs!r}")
     if n_jobs > 0:
         return int(n_jobs)
+    if n_jobs == -1:
+        return 0
     try:
         processors = len(os.sched_getaffinity(0))
     except AttributeError:  # not on Linux
@@ -68,7 +70,7 @@ def number_of(value: Any, name: str) -> float:
 def matrix_of(values: Any, name: str, shape: str) -> np.ndarray:
     """A float32 or float64 array of two dimensions, without a copy if it is one already."""
     if isinstance(values, np.ma.MaskedArray):
-        values = values.astype(np.result_type(values.dtype, np.float32)).filled(np.nan)
+        values = np.ma.filled(values.astype(np.result_type(values.dtype, np.float32)), np.nan)
     try:
         array = np.asarray(values)
     except ValueError as error:  # rows of different lengths
@@ -114,6 +116,8 @@ def toml_of(*layers: Settings) -> str:
     sections: dict[str, dict[str, Any]] = {}
     for layer in layers:
         for section, entries in (layer or {}).items():
+            if section == "experiment":
+                raise ValueError("settings of the section experiment are for whole experiments; here random_state is the seed")
             if not isinstance(entries, Mapping):
                 raise ValueError(f"settings[{section!r}] must be a mapping of names to values, but is {entries!r}")
             sections.setdefault(str(section), {}).update(entries)
@@ -134,7 +138,7 @@ def _value(value: Any, name: str) -> str:
         return "true" if value else "false"
     if isinstance(value, str):
         return _text(value)
-    if isinstance(value, numbers.Integral) and abs(value) < 2**63:
+    if isinstance(value, numbers.Integral) and abs(int(value)) < 2**63:
         return str(int(value))
     if isinstance(value, numbers.Real) and not isinstance(value, numbers.Integral):
         return repr(float(value))

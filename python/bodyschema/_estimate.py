@@ -15,6 +15,8 @@ from . import _bodyschema, _picture
 from ._arguments import Progress, RandomState, count_of, jobs_of, labels_of, matrix_of, number_of, progress_of, seed_of
 
 SHAPE = "a row for each sample in time, a column for each sensor"
+# Samples over which no sensor only rises.
+MONOTONE = 20
 
 
 class RecordingWarning(UserWarning):
@@ -80,11 +82,8 @@ class Joints:
         return f"<{type(self).__name__}: {len(self.labels)} parts, {len(self.tree)} joints>"
 
     def __str__(self) -> str:
-        return "\n".join(_picture.text_tree(self.labels, self.tree, self.support, self._name))
-
-    def _name(self, part: int) -> str:
-        rank = dict(zip(self.labels.tolist(), self.ranks.tolist())).get(part, 0)
-        return f"part {part} (motion of rank {rank})"
+        names = {part: f"part {part} (motion of rank {node['rank']})" for part, node in self._nodes().items()}
+        return "\n".join(_picture.text_tree(names, self.tree, self.support))
 
     def _nodes(self) -> dict[int, dict[str, Any]]:
         return {part: {"rank": rank} for part, rank in zip(self.labels.tolist(), self.ranks.tolist())}
@@ -181,7 +180,11 @@ class Estimate(Joints):
             return "\n".join(lines)
         if len(self.tree) > 0:
             lines.append("tree, with the bootstrap support of each joint (given the parts):")
-        lines.extend(_picture.text_tree(self.labels, self.tree, self.support, self._name))
+        names = {
+            part: f"part {part} ({len(node['sensors'])} sensors, motion of rank {node['rank']})"
+            for part, node in self._nodes().items()
+        }
+        lines.extend(_picture.text_tree(names, self.tree, self.support))
         if len(self.labels) == 1:
             residual = float(np.nanmean(self.residuals))
             still = "; no joint seems to move" if residual < 0.05 else ""
@@ -189,10 +192,6 @@ class Estimate(Joints):
                 f"no two parts can be distinguished: the residual variance of a single rigid motion is {100 * residual:.1f} %{still}"
             )
         return "\n".join(lines)
-
-    def _name(self, part: int) -> str:
-        node = self._nodes()[part]
-        return f"part {part} ({len(node['sensors'])} sensors, motion of rank {node['rank']})"
 
     def _nodes(self) -> dict[int, dict[str, Any]]:
         nodes = super()._nodes()
@@ -213,7 +212,7 @@ class Estimate(Joints):
         return _picture.page(self)
 
 
-def read_touch(path: Union[str, os.PathLike]) -> np.ndarray:
+def read_touch(path: Union[str, os.PathLike[str]]) -> np.ndarray:
     """Read a recording from a file, as the command line does.
 
     Parameters
@@ -244,7 +243,7 @@ def touch_of(touch: Any) -> np.ndarray:
     if isinstance(touch, (str, os.PathLike)):
         return read_touch(touch)
     array = matrix_of(touch, "touch", SHAPE)
-    if array.shape[0] > 2 and array.shape[1] > 0 and bool(np.all(array[1:, 0] > array[:-1, 0])):
+    if array.shape[0] > MONOTONE and array.shape[1] > 0 and bool(np.all(array[1:, 0] > array[:-1, 0])):
         raise ValueError("column 0 of touch rises with every row, as a time does and no sensor: leave it out, touch[:, 1:]")
     return array
 

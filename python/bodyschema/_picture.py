@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import html
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -28,13 +28,13 @@ def neighbours_of(labels: Iterable[int], tree: np.ndarray) -> dict[int, list[int
     return {part: sorted(others) for part, others in neighbours.items()}
 
 
-def text_tree(labels: np.ndarray, tree: np.ndarray, support: np.ndarray, name: Callable[[int], str]) -> list[str]:
-    """A tree as lines, from its first part on."""
+def text_tree(names: Mapping[int, str], tree: np.ndarray, support: np.ndarray) -> list[str]:
+    """A tree over parts with these names as lines, from its first part on."""
     shares = {frozenset(edge): share for edge, share in zip(tree.tolist(), support.tolist())}
-    neighbours = neighbours_of(labels, tree)
+    neighbours = neighbours_of(names, tree)
     lines: list[str] = []
     seen: set[int] = set()
-    # Not by recursion, since a snake may be long.
+    # Not by recursion: a snake may be long.
     for root in neighbours:
         stack = [(root, "", "")]
         while stack:
@@ -42,7 +42,7 @@ def text_tree(labels: np.ndarray, tree: np.ndarray, support: np.ndarray, name: C
             if part in seen:
                 continue
             seen.add(part)
-            lines.append(first + name(part))
+            lines.append(first + names[part])
             children = [other for other in neighbours[part] if other not in seen]
             for at, child in reversed(list(enumerate(children))):
                 is_last = at + 1 == len(children)
@@ -56,7 +56,7 @@ def page(found: Estimate) -> str:
     lines = [html.escape(line) for line in str(found).splitlines()[:2]]
     pictures = "".join(filter(None, [_map(found), _tree(found) if found.shows_tree else None]))
     rows = "".join(
-        f"<tr><td><span style='color:{_colour(part)}'>&#9679;</span> {part}</td><td>{len(node['sensors'])}</td>"
+        f"<tr><td><span style='color:{_colour(part)}'>{'&#9675;' if _is_hollow(part) else '&#9679;'}</span> {part}</td><td>{len(node['sensors'])}</td>"
         f"<td>{node['rank']}</td><td>{100 * node['residual']:.2f} %</td></tr>"
         for part, node in found._nodes().items()
     )
@@ -70,6 +70,16 @@ def page(found: Estimate) -> str:
 
 def _colour(part: int) -> str:
     return COLOURS[part % len(COLOURS)]
+
+
+def _is_hollow(part: int) -> bool:
+    """Whether a part's markers are hollow, since there are fewer colours than parts."""
+    return part // len(COLOURS) % 2 == 1
+
+
+def _paint(part: int) -> str:
+    colour = _colour(part)
+    return f"fill='{'#fff' if _is_hollow(part) else colour}' stroke='{colour}' stroke-width='1.5'"
 
 
 def _svg(title: str, body: str) -> str:
@@ -90,7 +100,7 @@ def _map(found: Estimate) -> str | None:
     scale = (SIDE - 3 * MARGIN) / max(float((high - low).max()), 1e-300)
     at = SIDE / 2 + (places - (low + high) / 2) * scale * np.array([1.0, -1.0]) + np.array([0.0, MARGIN / 2])
     marks = "".join(
-        f"<circle cx='{x:.1f}' cy='{y:.1f}' r='3' fill='{_colour(part)}' fill-opacity='0.75'><title>sensor {sensor}, part {part}</title></circle>"
+        f"<circle cx='{x:.1f}' cy='{y:.1f}' r='2.5' {_paint(part)} opacity='0.75'><title>sensor {sensor}, part {part}</title></circle>"
         for (x, y), sensor, part in zip(at.tolist(), found.mapped.tolist(), found.parts[found.mapped].tolist())
     )
     return _svg("Body map of the sensors", marks)
@@ -100,9 +110,8 @@ def _tree(found: Estimate) -> str:
     """The tree, from the part with most joints down."""
     neighbours = neighbours_of(found.labels, found.tree)
     root = max(neighbours, key=lambda part: (len(neighbours[part]), -part))
-    order, depth, parent = [root], {root: 0}, {root: root}
-    stack = [root]
-    order = []
+    depth, parent = {root: 0}, {root: root}
+    stack, order = [root], []
     while stack:
         part = stack.pop()
         order.append(part)
@@ -126,15 +135,17 @@ def _tree(found: Estimate) -> str:
 
     lines, marks = [], []
     for (child, other), support in zip(found.tree.tolist(), found.support.tolist()):
-        (x0, y0), (x1, y1) = place(child), place(other)
+        (x0, y0), (x1, y1) = sorted([place(child), place(other)], key=lambda at: at[1])
         lines.append(f"<line x1='{x0:.1f}' y1='{y0:.1f}' x2='{x1:.1f}' y2='{y1:.1f}' stroke='#6e6e6e' stroke-width='{0.5 + 2.5 * support:.1f}'/>")
         marks.append(
-            f"<text x='{(x0 + x1) / 2 + 4:.1f}' y='{(y0 + y1) / 2:.1f}' font-size='11' font-family='sans-serif'>{100 * support:.0f} %</text>"
+            f"<text x='{x1 + 0.42 * (x0 - x1):.1f}' y='{y1 + 0.42 * (y0 - y1) + 4:.1f}' font-size='10' font-family='sans-serif' "
+            f"text-anchor='middle' paint-order='stroke' stroke='#fff' stroke-width='3'>{100 * support:.0f} %</text>"
         )
     for part in neighbours:
         x, y = place(part)
         marks.append(
-            f"<circle cx='{x:.1f}' cy='{y:.1f}' r='12' fill='{_colour(part)}'/><text x='{x:.1f}' y='{y + 4:.1f}' font-size='12' fill='#fff' "
+            f"<circle cx='{x:.1f}' cy='{y:.1f}' r='12' {_paint(part)}/><text x='{x:.1f}' y='{y + 4:.1f}' font-size='12' "
+            f"fill='{_colour(part) if _is_hollow(part) else '#fff'}' "
             f"text-anchor='middle' font-family='sans-serif'>{part}</text>"
         )
     return _svg("Tree, with bootstrap support", "".join(lines + marks))

@@ -46,7 +46,7 @@ class Simulation:
 
 
 def simulate(
-    body: Union[None, str, os.PathLike] = None,
+    body: Union[None, str, os.PathLike[str]] = None,
     *,
     duration: Optional[float] = None,
     coordination: Optional[float] = None,

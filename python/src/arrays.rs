@@ -8,7 +8,7 @@ use bodyschema::stages::sense::Tactile;
 use bodyschema::stages::tree::Edge;
 use numpy::ndarray::{Array2, ArrayView2};
 use numpy::{Element, IntoPyArray, PyArray2, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyMemoryError, PyValueError};
 use pyo3::prelude::*;
 use rayon::prelude::*;
 
@@ -53,6 +53,7 @@ fn series<T: Copy + Send + Sync>(
 ) -> PyResult<Tactile> {
     let (samples, sensors) = rows.dim();
     check_sensors(samples, sensors)?;
+    check_memory::<f32>(samples, sensors)?;
     let pressures = threads.copy(py, || {
         let mut pressures = vec![0.0; samples * sensors];
         pressures.par_chunks_mut(TOGETHER * samples).enumerate().for_each(|(at, group)| {
@@ -89,10 +90,20 @@ pub(crate) fn check_sensors(samples: usize, sensors: usize) -> PyResult<()> {
     Ok(())
 }
 
+/// Refuses what the memory cannot hold: an array may be larger than its memory (`numpy.broadcast_to`).
+pub(crate) fn check_memory<T>(rows: usize, columns: usize) -> PyResult<()> {
+    let fits =
+        rows.checked_mul(columns).is_some_and(|count| Vec::<T>::new().try_reserve_exact(count).is_ok());
+    if fits {
+        return Ok(());
+    }
+    Err(PyMemoryError::new_err(format!("an array of shape ({rows}, {columns}) does not fit the memory")))
+}
+
 /// The same pressures as the stages of the paper take them: finite, and not negative.
 pub(crate) fn felt(threads: &Threads, array: &Bound<'_, PyAny>) -> PyResult<Tactile> {
     let tactile = touch(threads, array)?;
-    match tactile.pressures.iter().position(|pressure| !(*pressure >= 0.0)) {
+    match tactile.pressures.iter().position(|pressure| pressure.is_nan() || *pressure < 0.0) {
         None => Ok(tactile),
         Some(at) => Err(value_error(format!(
             "touch[{}, {}] is {}, but a pressure must be a finite number and not negative",
@@ -112,6 +123,7 @@ fn rows(array: &Bound<'_, PyAny>, name: &str) -> PyResult<(usize, usize, Vec<f64
     if count == 0 || width == 0 {
         return Err(value_error(format!("{name} is empty: its shape is ({count}, {width})")));
     }
+    check_memory::<f64>(count, width)?;
     let values: Vec<f64> = array.as_array().iter().copied().collect();
     match values.iter().position(|value| !value.is_finite()) {
         None => Ok((count, width, values)),

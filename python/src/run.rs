@@ -38,7 +38,7 @@ impl Steps {
 }
 
 impl Threads {
-    /// Starts so many threads.
+    /// Starts so many threads; 0: as many as the command line.
     pub(crate) fn start(jobs: usize) -> PyResult<Self> {
         let flag = Arc::new(AtomicBool::new(false));
         let watched = Arc::clone(&flag);

@@ -10,7 +10,7 @@ use bodyschema::stages::tree::{Edge, Truth};
 use numpy::{PyArray2, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
-use crate::arrays::{self, by_rows, by_series, check_sensors, value_error};
+use crate::arrays::{self, by_rows, by_series, check_memory, check_sensors, value_error};
 use crate::run::{Steps, Threads};
 
 /// Stage 3; `changes` are settings in TOML.
@@ -42,6 +42,7 @@ pub(crate) fn information_metric<'py>(
     let array = symbols.try_readonly().map_err(value_error)?;
     let (samples, sensors) = array.as_array().dim();
     check_sensors(samples, sensors)?;
+    check_memory::<u8>(samples, sensors)?;
     let rows = array.as_array();
     let values: Vec<u8> = threads.copy(py, || rows.t().iter().copied().collect())?;
     // Two at least: a single symbol is one that never changes.

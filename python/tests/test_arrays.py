@@ -38,6 +38,7 @@ class Wrapped:
         lambda x: x.astype(np.longdouble),
         lambda x: x.astype(object),
         lambda x: x.tolist(),
+        lambda x: np.broadcast_to(x[:, None], (len(x), 2, x.shape[1]))[:, 1],
         lambda x: np.ma.masked_invalid(x),
         unaligned,
         Wrapped,
@@ -56,16 +57,15 @@ def test_a_read_only_file_in_memory_will_do(moved, found, tmp_path):
 
 def test_integers_truth_values_and_half_precision_are_numbers(moved):
     raw = np.round(moved.touch * 1000)
-    expected = bodyschema.estimate(raw)
-    for dtype in [np.int32, np.int64, np.uint32]:
-        assert same(bodyschema.estimate(raw.astype(dtype)), expected)
+    expected = bodyschema.quantise(raw)
+    for dtype in [np.int32, np.int64, np.uint32, ">i4", np.float16]:
+        assert same(bodyschema.quantise(raw.clip(0, 2000).astype(dtype)), bodyschema.quantise(raw.clip(0, 2000).astype(dtype).astype("f4")))
+    assert same(bodyschema.quantise(raw.astype(np.int64)), expected)
     pads = moved.touch > 0.1
     with pytest.warns(bodyschema.RecordingWarning, match="does not fit"):
         expected = bodyschema.estimate(pads.astype(np.float32))
     with pytest.warns(bodyschema.RecordingWarning, match="does not fit"):
         assert same(bodyschema.estimate(pads), expected)
-    half = moved.touch.astype(np.float16)
-    assert same(bodyschema.estimate(half), bodyschema.estimate(half.astype(np.float32)))
 
 
 @pytest.mark.parametrize("order", ["C", "F"])
@@ -114,7 +114,7 @@ def test_masked_values_are_missing(moved):
         (np.full((5, 20), np.nan), "0 of 20 sensors"),
         (np.eye(11)[::-1], "11 of 11 sensors feel anything usable, but estimating parts needs at least 12"),
         (np.zeros((2, 20_001), dtype=np.float32), "is it transposed"),
-        (np.arange(200.0).reshape(10, 20), "column 0 of touch rises with every row"),
+        (np.arange(600.0).reshape(30, 20), "column 0 of touch rises with every row"),
     ],
 )
 @pytest.mark.filterwarnings("ignore::bodyschema.RecordingWarning")
@@ -125,9 +125,20 @@ def test_what_is_no_recording_is_refused_in_a_line(touch, message):
     assert type(error.value) is ValueError
 
 
+def test_what_does_not_fit_the_memory_is_refused():
+    for dtype in [np.float32, np.float64]:
+        huge = np.broadcast_to(np.zeros(1, dtype=dtype), (10**11, 100))
+        with pytest.raises(MemoryError, match="does not fit the memory"):
+            bodyschema._bodyschema.estimate(huge, False, 1, 1, None)
+        with pytest.raises(MemoryError, match="does not fit the memory"):
+            bodyschema._bodyschema.quantise(huge, "", 1)
+    with pytest.raises(MemoryError, match="does not fit the memory"):
+        bodyschema.information_metric(np.broadcast_to(np.uint8(1), (10**12, 100)))
+
+
 @pytest.mark.filterwarnings("ignore::bodyschema.RecordingWarning")
-@pytest.mark.parametrize("samples", [1, 2, 3, 4, 7, 30, 101])
-@pytest.mark.parametrize("sensors", [12, 17, 40])
+@pytest.mark.parametrize("samples", [1, 2, 3, 5, 8, 60])
+@pytest.mark.parametrize("sensors", [12, 25])
 def test_nonsense_never_ends_in_a_mistake_of_ours(samples, sensors):
     rng = np.random.default_rng(samples * sensors)
     forms = [
@@ -138,14 +149,19 @@ def test_nonsense_never_ends_in_a_mistake_of_ours(samples, sensors):
         np.tile(rng.random((samples, 1)) - 0.5, sensors),
         rng.integers(2, size=(samples, sensors)),
     ]
-    for touch in forms:
-        for signed in [None, False]:
-            try:
-                found = bodyschema.estimate(touch, signed=signed, force=True, n_jobs=2)
-            except ValueError as error:
-                assert "feel anything usable" in str(error) or "rises with every row" in str(error)
-            else:
-                assert len(found.tree) + 1 == len(found.labels) and str(found) and found._repr_html_()
+    for at, touch in enumerate(forms):
+        try:
+            found = bodyschema.estimate(touch, signed=[None, False][at % 2], force=True)
+        except ValueError as error:
+            assert "feel anything usable" in str(error)
+        else:
+            assert len(found.tree) + 1 == len(found.labels) and str(found) and found._repr_html_()
+        try:
+            joints = bodyschema.estimate_tree(touch, np.arange(sensors) % 5 - 1, rank=[None, 1, 6][at % 3])
+        except ValueError as error:
+            assert "no sensor that has a part" in str(error)
+        else:
+            assert len(joints.tree) + 1 == len(joints.labels) and str(joints)
 
 
 @pytest.mark.parametrize(
@@ -178,8 +194,8 @@ def test_a_path_that_leads_nowhere_is_named(tmp_path):
 
 @pytest.mark.filterwarnings("ignore::bodyschema.RecordingWarning")
 def test_negative_values_count_or_do_not(moved):
-    touch = moved.touch - np.roll(moved.touch, 1, axis=1)
-    assert bodyschema.estimate(touch).signed and bodyschema.estimate(touch, signed=True).signed
+    touch = (moved.touch - np.roll(moved.touch, 1, axis=1))[:300]
+    assert bodyschema.estimate(touch, signed=True).signed
     unsigned = bodyschema.estimate(touch, signed=False)
     assert not unsigned.signed
     assert same(unsigned, bodyschema.estimate(np.maximum(touch, 0)))
@@ -237,6 +253,7 @@ def test_bodies_and_settings_are_checked(tmp_path):
         ({"coordination": 2}, "`motion.coordination` is 2"),
         ({"settings": {"motion": {"speed": 3}}}, "unknown setting `motion.speed`"),
         ({"settings": {"motion": 3}}, "must be a mapping"),
+        ({"settings": {"experiment": {"seed": 3}}}, "random_state is the seed"),
         ({"settings": {"motion": {"epoch": None}}}, "motion.epoch must be a number"),
         ({"settings": {'a"]\n[b': {"x": 1}}}, "unknown setting"),
     ]:

@@ -2,12 +2,12 @@
 
 import copy
 import multiprocessing
-import os
 import pickle
 import signal
 import sys
 import threading
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -83,7 +83,7 @@ def interrupted(work):
 
 def busy():
     """Names of our threads that run."""
-    names = [open(f"/proc/self/task/{task}/comm").read().strip() for task in os.listdir("/proc/self/task")]
+    names = [path.read_text().strip() for path in Path("/proc/self/task").glob("*/comm")]
     return [name for name in names if name.startswith("bodyschema")]
 
 
@@ -104,7 +104,7 @@ def test_ctrl_c_ends_every_long_computation_and_its_threads(points):
         lambda: bodyschema._bodyschema.cluster(many, "gmm", 300, 1000, 1, 1),
         lambda: bodyschema._bodyschema.cluster(many, "k-means", 300, 1000, 1, 1),
     ]:
-        assert interrupted(work) < 2.0
+        assert interrupted(work) < 4.0
     deadline = time.perf_counter() + 2
     while busy() and time.perf_counter() < deadline:
         time.sleep(0.01)
@@ -160,7 +160,8 @@ def test_results_can_be_pickled_and_copied(moved, found, points):
 
 
 def child(touch, queue):
-    queue.put(bodyschema.estimate(touch, progress=False))
+    moved = bodyschema.simulate("star", duration=5, random_state=1)
+    queue.put((bodyschema.estimate(touch, interval=0.1, progress=False), moved))
 
 
 @pytest.mark.filterwarnings("ignore:.*fork.*:DeprecationWarning")
@@ -170,9 +171,10 @@ def test_processes_that_fork_or_not_compute_the_same(moved, found, method):
     queue = context.Queue()
     process = context.Process(target=child, args=(moved.touch, queue))
     process.start()
-    result = queue.get(timeout=60)
+    results = queue.get(timeout=60)
     process.join()
-    assert result.support.tobytes() == found.support.tobytes() and result.parts.tolist() == found.parts.tolist()
+    assert process.exitcode == 0
+    assert same(results[0], found) and same(results[1], bodyschema.simulate("star", duration=5, random_state=1))
 
 
 def test_arrays_outlive_what_they_came_from(moved):
