@@ -6,7 +6,8 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-PLATFORM = ["--filter-platform", subprocess.run(["rustc", "-vV"], capture_output=True, text=True, check=True).stdout.split("host: ")[1].split()[0]]
+RUSTC = subprocess.run(["rustc", "-vV"], capture_output=True, text=True, check=True).stdout
+PLATFORM = ["--filter-platform", RUSTC.split("host: ")[1].split()[0]]
 
 
 def crates():

@@ -420,7 +420,8 @@ def _warn(facts: Mapping[str, Any], sensors: int) -> None:
         warn(f"{facts['lost_samples']} samples are left out, because most sensors have no value there")
     if facts["noisy"] > 0:
         warn(
-            f"{facts['noisy']} of {len(facts['sensors'])} sensors are noisy; they are smoothed, and pressures within the noise count as no touch"
+            f"{facts['noisy']} of {len(facts['sensors'])} sensors are noisy; they are smoothed, and pressures within the noise count as "
+            "no touch"
         )
     if facts["dropped"]:
         first, fault = facts["dropped"][0]

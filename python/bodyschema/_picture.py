@@ -84,7 +84,7 @@ def _paint(part: int) -> str:
 
 def _svg(title: str, body: str) -> str:
     return (
-        f"<svg xmlns='http://www.w3.org/2000/svg' width='{SIDE:.0f}' height='{SIDE:.0f}' viewBox='0 0 {SIDE:.0f} {SIDE:.0f}' role='img' "
+        f"<svg xmlns='http://www.w3.org/2000/svg' width='{SIDE:.0f}' height='{SIDE:.0f}' role='img' "
         f"aria-label='{html.escape(title)}' style='background:#fff'><title>{html.escape(title)}</title>"
         f"<text x='8' y='16' font-size='12' font-family='sans-serif'>{html.escape(title)}</text>{body}</svg>"
     )

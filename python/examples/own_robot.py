@@ -11,8 +11,8 @@ Without one, a simulated body stands in for the robot.
 # %%
 # A recording
 # -----------
-# Record for as long as each joint makes about 100 movements, and drive joints at random, one against the other. Sensors must feel a fluid or
-# air: contact does not fit.
+# Record for as long as each joint makes about 100 movements, and drive joints at random, one against the other. Sensors must feel a
+# fluid or air: contact does not fit.
 
 import sys
 import tempfile
@@ -51,8 +51,8 @@ print(f"sensors that were left out: {dict(found.dropped) or 'none'}")
 # %%
 # Parts
 # -----
-# The residual is the share of what a sensor feels that its part's motion does not explain. Where the residual of the next best part is near to
-# it, the part of the sensor is uncertain.
+# The residual is the share of what a sensor feels that its part's motion does not explain. Where the residual of the next best part is
+# near to it, the part of the sensor is uncertain.
 
 for part in found.labels:
     own = found.sensors_of(part)

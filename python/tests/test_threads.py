@@ -171,7 +171,7 @@ def test_processes_that_fork_or_not_compute_the_same(moved, found, method):
     queue = context.Queue()
     process = context.Process(target=child, args=(moved.touch, queue))
     process.start()
-    results = queue.get(timeout=60)
+    results = queue.get(timeout=300)
     process.join()
     assert process.exitcode == 0
     assert same(results[0], found) and same(results[1], bodyschema.simulate("star", duration=5, random_state=1))
