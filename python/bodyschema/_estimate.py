@@ -218,7 +218,8 @@ def read_touch(path: Union[str, os.PathLike[str]]) -> np.ndarray:
     Parameters
     ----------
     path : str or path
-        A `.npy` or `.csv` file: a row for each sample in time, a column for each sensor.
+        A table in text, a `.npy` file or an `.npz` archive: a row for each sample in time, a column for each sensor. A column of
+        times is left out.
 
     Returns
     -------
@@ -231,21 +232,34 @@ def read_touch(path: Union[str, os.PathLike[str]]) -> np.ndarray:
         If there is no such file.
     ValueError
         If it is no table of numbers; the message names the row and the column.
+
+    Warns
+    -----
+    RecordingWarning
+        What was guessed of the file, such as its separator and which column is the time.
     """
+    return _read(path)[0]
+
+
+def _read(path: Union[str, os.PathLike[str]]) -> tuple[np.ndarray, Optional[float]]:
+    """A recording from a file, and the time between two samples, s, if the file tells it."""
     path = os.fspath(path)
     if not os.path.exists(path):
         raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), path)
-    return _bodyschema.read_touch(path, jobs_of(-1))
+    array, interval, guesses = _bodyschema.read_touch(path, jobs_of(-1))
+    for guess in guesses:
+        warnings.warn(f"{path}: {guess}", RecordingWarning, stacklevel=4)
+    return array, interval
 
 
-def touch_of(touch: Any) -> np.ndarray:
-    """A recording, T × M float32 or float64, from a file or anything that NumPy takes for an array."""
+def touch_of(touch: Any) -> tuple[np.ndarray, Optional[float]]:
+    """A recording, T × M float32 or float64, from a file or anything that NumPy takes for an array; and its interval, if known."""
     if isinstance(touch, (str, os.PathLike)):
-        return read_touch(touch)
+        return _read(touch)
     array = matrix_of(touch, "touch", SHAPE)
     if array.shape[0] > MONOTONE and array.shape[1] > 0 and bool(np.all(array[1:, 0] > array[:-1, 0])):
         raise ValueError("column 0 of touch rises with every row, as a time does and no sensor: leave it out, touch[:, 1:]")
-    return array
+    return array, None
 
 
 def estimate(
@@ -266,10 +280,10 @@ def estimate(
     Parameters
     ----------
     touch : array-like of shape (T, M), or the path of a file
-        Pressures of M sensors at T samples, in any unit; 12 to 20,000 sensors. NaN where there is no value. The path of a `.npy`
-        or `.csv` file will do. A float32 or float64 array is read where it is, in any order of memory, and is not changed.
+        Pressures of M sensors at T samples, in any unit; 12 to 20,000 sensors. NaN where there is no value. The path of a
+        table, a `.npy` file or an `.npz` archive will do. A float32 or float64 array is read where it is, in any order of memory, and is not changed.
     interval : float, optional
-        Time between two samples, s. It only labels the time.
+        Time between two samples, s. It only labels the time. By default that of the column of times of a file.
     signed : bool, optional
         Whether negative values count. By default they do if they are more than 1 % of the sum of all absolute values. False takes
         each negative value for 0. True makes sure that they count.
@@ -320,7 +334,9 @@ def estimate(
         raise ValueError(f"interval must be a time above 0, in s, but is {interval!r}")
     if signed not in (None, True, False):
         raise ValueError(f"signed must be True, False or None, but is {signed!r}")
-    seed, jobs, array = seed_of(random_state), jobs_of(n_jobs), touch_of(touch)
+    seed, jobs = seed_of(random_state), jobs_of(n_jobs)
+    array, read_interval = touch_of(touch)
+    interval = read_interval if interval is None else interval
     with progress_of(progress, 3, "estimate") as tell:
         facts = _bodyschema.estimate(array, signed is not None and not signed, seed, jobs, tell)
     if signed and not facts["signed"]:
@@ -394,7 +410,8 @@ def estimate_tree(
     -----
     It is `bodyschema tree` of the command line; docs/estimate.md has the theory.
     """
-    seed, jobs, array = seed_of(random_state), jobs_of(n_jobs), touch_of(touch)
+    seed, jobs = seed_of(random_state), jobs_of(n_jobs)
+    array, _ = touch_of(touch)
     labels = labels_of(parts, "parts", -1)
     facts = _bodyschema.tree(array, labels.tolist(), None if rank is None else count_of(rank, "rank"), seed, jobs, None)
     _warn(facts, array.shape[1])
@@ -418,6 +435,12 @@ def _warn(facts: Mapping[str, Any], sensors: int) -> None:
 
     if facts["lost_samples"] > 0:
         warn(f"{facts['lost_samples']} samples are left out, because most sensors have no value there")
+    if facts["saturated"] > 0:
+        warn(f"{facts['saturated']} values are at the end of the range of their sensor for three samples or more, and count as missing")
+    if facts["infinite"] > 0:
+        warn(f"{facts['infinite']} values are infinite, and count as missing")
+    if facts["missing"] > 0:
+        warn(f"{facts['missing']} values are missing of the sensors that are used; they are not interpolated")
     if facts["noisy"] > 0:
         warn(
             f"{facts['noisy']} of {len(facts['sensors'])} sensors are noisy; they are smoothed, and pressures within the noise count as "

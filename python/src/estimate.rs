@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use bodyschema::estimate::{Estimate, TooFewSensors, Verdict, estimate as estimate_of};
-use bodyschema::files::touch;
+use bodyschema::files::touch::{self, Recorded};
 use bodyschema::numerics::rng::stream;
 use bodyschema::recording::Recording;
 use bodyschema::settings::{Base, Settings};
@@ -15,12 +15,16 @@ use pyo3::types::PyDict;
 use crate::arrays::{self, by_rows, by_series, check_sensors, edges, ends, value_error, whole};
 use crate::run::{Steps, Threads};
 
-/// Reads a recording as `bodyschema estimate` does: T × M, float32, NaN where there is no value.
+/// A recording, T × M; the time between two samples, s, if the file tells it; and what was guessed of the file.
+type Read<'py> = (Bound<'py, PyArray2<f32>>, Option<f64>, Vec<String>);
+
+/// Reads a recording as `bodyschema estimate` does: float32, NaN where there is no value.
 #[pyfunction]
-pub(crate) fn read_touch(py: Python<'_>, path: PathBuf, jobs: usize) -> PyResult<Bound<'_, PyArray2<f32>>> {
+pub(crate) fn read_touch(py: Python<'_>, path: PathBuf, jobs: usize) -> PyResult<Read<'_>> {
     let threads = Threads::start(jobs)?;
-    let tactile = threads.run(py, None, move |_| touch::read_touch(&path))?.map_err(value_error)?;
-    by_series(py, tactile.samples, tactile.pressures)
+    let read = move |_: &Steps| touch::read_recorded(&path, &touch::Format::default());
+    let Recorded { tactile, interval, guesses } = threads.run(py, None, read)?.map_err(value_error)?;
+    Ok((by_series(py, tactile.samples, tactile.pressures)?, interval, guesses))
 }
 
 /// `bodyschema estimate`. `unsigned` takes negative pressures for 0.
@@ -122,6 +126,9 @@ fn cleaned(facts: &Bound<'_, PyDict>, recording: &Recording) -> PyResult<()> {
         recording.dropped.iter().map(|(sensor, fault)| (*sensor, fault.to_string())).collect();
     facts.set_item("dropped", dropped)?;
     facts.set_item("lost_samples", recording.lost_samples)?;
+    facts.set_item("missing", recording.missing.values)?;
+    facts.set_item("infinite", recording.missing.infinite)?;
+    facts.set_item("saturated", recording.missing.saturated)?;
     facts.set_item("noisy", recording.noisy)?;
     facts.set_item("signed", recording.signed)
 }

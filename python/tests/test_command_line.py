@@ -71,6 +71,15 @@ def test_a_file_is_read_as_the_command_line_reads_it(folder, tmp_path, moved, fo
     assert same(bodyschema.read_touch(tmp_path / "touch.csv"), moved.touch)
 
 
+def test_a_column_of_times_is_said_and_gives_the_interval(tmp_path, moved, found):
+    times = 0.1 * np.arange(len(moved.touch))[:, None]
+    names = ",".join(["time", *["a"] * moved.touch.shape[1]])
+    np.savetxt(tmp_path / "touch.csv", np.hstack([times, moved.touch]), delimiter=",", header=names, comments="", fmt="%.9g")
+    with pytest.warns(bodyschema.RecordingWarning, match="touch.csv: .*time"):
+        read = bodyschema.estimate(tmp_path / "touch.csv")
+    assert same(read.parts, found.parts) and abs(read.interval - 0.1) < 1e-9
+
+
 def test_the_tree_over_known_parts(folder, tmp_path, command, moved):
     command("tree", folder / "tactile.npy", "--parts", folder / "labels.csv", "--seed", SEED, "--out", tmp_path)
     joints = bodyschema.estimate_tree(moved.touch, moved.parts, random_state=SEED)
