@@ -163,6 +163,88 @@ fn shards_give_the_bytes_of_one_run_and_a_failure_is_a_result() {
     succeed(folder.path(), "verify whole");
 }
 
+/// Two meanings of an eligible sample judge the same samples, a reading overrides what it brings itself, and what is finished can be
+/// joined.
+#[test]
+fn an_evaluation_takes_no_new_samples_and_ranges_are_joined() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    let more = r#"
+[[factor]]
+name = "reading"
+level = "inference"
+paper = "both"
+[[factor.option]]
+label = "equations"
+weight = 3
+why = "the text"
+[[factor.option]]
+label = "code"
+why = "the code"
+settings = { schema = { sampler = "authors-code", start = "stick-breaking" } }
+[[factor]]
+name = "counts"
+level = "evaluation"
+paper = "1.00"
+[[factor.option]]
+label = "exact"
+why = "exact"
+settings = { evaluate = { eligible_ari = 1.0 } }
+[[factor.option]]
+label = "lenient"
+why = "lenient"
+settings = { evaluate = { eligible_ari = 0.3 } }
+"#;
+    let claim = "[[claim]]\nid = \"tree-accuracy\"\nexperiment = \"exp1\"\nlabel = \"tree\"\n[[factor]]\nname = \"gains\"";
+    let design = DESIGN.replacen("[[factor]]\nname = \"gains\"", claim, 1) + more;
+    let design = design
+        .replace(
+            "movements = 4\ndistances = 2\nmaps = 2\ninferences = 1",
+            "movements = 2\ndistances = 1\nmaps = 1\ninferences = 4",
+        )
+        .replace("dimensions = [2, 4]", "dimensions = [4, 14]")
+        .replace("dimension = 4 }", "dimension = 14 }");
+    fs::write(at("design.toml"), design).unwrap();
+    succeed(folder.path(), "study design.toml --out whole");
+    let configurations = rows(&at("whole/configurations.csv"));
+    let claims = rows(&at("whole/study.csv"));
+    let n = |configuration: &str, claim: &str| -> usize {
+        let row = claims.iter().find(|row| row["configuration"] == configuration && row["claim"] == claim);
+        row.unwrap()["n"].parse().unwrap()
+    };
+    let mut more = 0;
+    for pair in configurations.chunks(2) {
+        let [exact, lenient] = pair else { panic!("{pair:?}") };
+        assert_eq!((&*exact["counts"], &*lenient["counts"]), ("exact", "lenient"));
+        let (exact_n, lenient_n) =
+            (n(&exact["configuration"], "tree-accuracy"), n(&lenient["configuration"], "tree-accuracy"));
+        assert!(exact_n <= lenient_n);
+        more += lenient_n - exact_n;
+        assert_eq!(exact["reading"] == "code", exact["start"].is_empty(), "{exact:?}");
+    }
+    assert!(more > 0, "some samples count only leniently: {claims:?}");
+
+    // Ranges of movements, in any order, give the same tables.
+    let half = configurations.iter().filter(|row| row["movement"] == "1").count();
+    let ranges = ["movements-2-2", "movements-1-1"];
+    for range in ranges {
+        succeed(folder.path(), &format!("study design.toml --only {range} --out parts/{range}"));
+    }
+    succeed(folder.path(), "study design.toml --join parts --out joined");
+    let (whole, joined) = (files(&at("whole")), files(&at("joined")));
+    assert_eq!(joined, whole);
+    // What is there is joined, and says how much it is; twice the same is refused.
+    fs::remove_dir_all(at(&format!("parts/{}", ranges[0]))).unwrap();
+    succeed(folder.path(), "study design.toml --join parts --out some");
+    assert_eq!(rows(&at("some/configurations.csv")).len(), half);
+    let page = fs::read_to_string(at("some/study.md")).unwrap();
+    assert!(page.contains(&format!("{half} of the {} of the design", configurations.len())), "{page}");
+    succeed(folder.path(), "study design.toml --only 1 --out parts/again");
+    let twice = bodyschema(folder.path(), "study design.toml --join parts --out twice");
+    let message = String::from_utf8(twice.stderr).unwrap();
+    assert!(twice.status.code() == Some(2) && message.contains("two of one configuration"), "{message}");
+}
+
 #[test]
 fn another_seed_gives_other_movements_and_is_kept_with_the_design() {
     let folder = tempfile::tempdir().unwrap();
@@ -230,6 +312,13 @@ fn what_cannot_be_done_is_refused_in_one_line() {
     ));
     one_line(refused(&DESIGN.replace("label = \"four\"", "label = \"two\""), "--out out", "two of `two`"));
     one_line(refused(&DESIGN.replace("simulations = 2", "simulations = 1"), "--out out", "one simulation"));
+    one_line(refused(&DESIGN.replace("maps = 2", "maps = 2\nkeep = 1.5"), "--out out", "`draws.keep` = 1.5"));
+    one_line(refused(&DESIGN.replace("why = \"few\"", "why = \"few\"\nweight = 0"), "--out out", "weight 0"));
+    let judged = DESIGN.replace("level = \"distances\"", "level = \"evaluation\"");
+    one_line(refused(&judged, "--out out", "`two` at the level evaluation"));
+    let left_out =
+        DESIGN.replace("[draws]", "[[left_out]]\nwhat = [\"agent.beauty\"]\nwhy = \"no\"\n[draws]");
+    one_line(refused(&left_out, "--out out", "leaves out `agent.beauty`"));
     let twice = DESIGN
         .replace("spin_damping = 0.1 }", "spin_damping = 0.1 }\nsettings = { motion = { error = \"raw\" } }");
     one_line(refused(&twice, "--out out", "gains are those of a torque"));

@@ -20,7 +20,8 @@ use crate::tasks::seeds::used_before;
 ///
 /// Writes into DIR: study.md (the report), figures/*.svg, configurations.csv (a row for each configuration), study.csv (a row for
 /// each configuration and claim), where the design asks for them measures.csv, shares.csv, variance.csv and ranking.csv, and
-/// design.toml. A run that was stopped continues. On several machines: run each shard into one shared folder, then gather.
+/// design.toml. A run that was stopped continues. On several machines: run each shard into one shared folder, then gather. Or run
+/// ranges of drawn movements into folders of their own, and join what is finished.
 #[derive(Args)]
 pub(super) struct Study {
     /// Design: a file, or the name of a bundled design
@@ -32,7 +33,10 @@ pub(super) struct Study {
     /// Run nothing; write the tables from the results of all shards
     #[arg(long, conflicts_with_all = ["shard", "only"])]
     gather: bool,
-    /// Run only this configuration (a number or a name), or those of this factor
+    /// Run nothing; write the tables of all configurations whose tables are in the folders of PARTS
+    #[arg(long, value_name = "PARTS", conflicts_with_all = ["shard", "only", "gather"])]
+    join: Option<PathBuf>,
+    /// Run only this configuration (a number or a name), those of these drawn movements (movements-1-8), or those of this factor
     #[arg(long, value_name = "K", conflicts_with = "shard")]
     only: Option<Selection>,
     /// Master seed, instead of the design's
@@ -63,6 +67,11 @@ impl Study {
             return Ok(ExitCode::SUCCESS);
         }
         prepare_folder(out)?;
+        if let Some(parts) = &self.join {
+            study::join(design, &source.text, parts, out)?;
+            say(format!("All files are in {}; open study.md there.", out.display()))?;
+            return Ok(ExitCode::SUCCESS);
+        }
         if !self.gather {
             study::run(&source.text, &configurations, self.shard.unwrap_or(Shard::WHOLE), out)?;
         }

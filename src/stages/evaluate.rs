@@ -48,10 +48,14 @@ pub fn score(labels: &[usize], tree: &[Edge], truth: &Truth, eligible_ari: f64) 
     let ari = adjusted_rand_index(labels, &truth.labels);
     Score {
         ari,
-        // A rounding below 1 is still 1.
-        eligible: parts(labels) == truth.parts() && ari >= eligible_ari - 1e-12,
+        eligible: parts(labels) == truth.parts() && is_eligible(ari, eligible_ari),
         tree_correct: tree_correct(labels, tree, truth),
     }
+}
+
+/// Whether an ARI is at least the minimum; a rounding below 1 is still 1.
+pub fn is_eligible(ari: f64, eligible_ari: f64) -> bool {
+    ari >= eligible_ari - 1e-12
 }
 
 /// Number of estimated parts: clusters of more than one sensor.

@@ -7,11 +7,11 @@ use std::ops::RangeInclusive;
 use serde::{Deserialize, Serialize};
 use toml::Table;
 
-use super::choices::{Gains, short};
+use super::choices::{Gains, flat, short};
 use super::extends::{BUNDLED, DesignText};
 use super::levels::{DrawCounts, Level};
 use crate::analysis::published::{Claim, Experiment, Measure};
-use crate::settings::toml_message;
+use crate::settings::{Settings, toml_message};
 use crate::tasks::error::ExperimentError;
 
 /// The name of the base among configurations that vary one factor at a time.
@@ -61,6 +61,9 @@ pub(crate) struct Design {
     /// What every configuration has instead of the values of `reproduce/paper.toml`.
     #[serde(default)]
     pub settings: Table,
+    /// Open settings that no factor varies and values that are no options, with reasons.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub left_out: Vec<LeftOut>,
     /// The next round of a search: how many of the best go on, and how they are run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub next: Option<Next>,
@@ -177,6 +180,29 @@ pub(crate) struct Choice {
     /// Gains that go with the body.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gains: Option<Gains>,
+    /// How many shares of the draws it has; 1 without a number.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub weight: Option<usize>,
+}
+
+/// Open settings that no factor varies, or values that are no options.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct LeftOut {
+    /// `section.key`, `section` for all of a section, or `section.key = value`.
+    pub what: Vec<String>,
+    /// Why.
+    pub why: String,
+}
+
+impl Choice {
+    /// The settings that it decides, `section.key`.
+    pub(crate) fn keys(&self) -> Vec<String> {
+        let motion = ["controller", "stiffness", "damping"].map(|name| format!("motion.{name}"));
+        let of_gains = motion.into_iter().filter(|_| self.gains.is_some());
+        let name = |line: String| line.split(" = ").next().unwrap_or_default().to_owned();
+        flat(&self.settings).into_iter().map(name).chain(of_gains).collect()
+    }
 }
 
 /// The next round of a search.
@@ -282,6 +308,27 @@ impl Factor {
     /// Names of its options.
     pub(crate) fn labels(&self) -> impl Iterator<Item = &str> {
         self.options.iter().map(|option| option.label.as_str())
+    }
+
+    /// The option at a place of [0, 1), of which each option has a part by its weight.
+    pub(crate) fn at(&self, place: f64) -> usize {
+        let weights = || self.options.iter().map(|option| option.weight.unwrap_or(1));
+        let slot = (place * weights().sum::<usize>() as f64) as usize;
+        let mut ends = weights().scan(0, |end, weight| {
+            *end += weight;
+            Some(*end)
+        });
+        ends.position(|end| slot < end).unwrap_or(self.options.len() - 1)
+    }
+
+    /// The option that changes nothing of the base.
+    pub(crate) fn of_base(&self, design: &Design) -> Option<usize> {
+        let overlaid = |tables: &[&Table]| Settings::overlaid(tables.iter().copied(), "").ok();
+        let base = overlaid(&[&design.settings]);
+        let is_base = |option: &Choice| {
+            option.gains.is_none() && overlaid(&[&design.settings, &option.settings]) == base
+        };
+        self.options.iter().position(is_base).filter(|_| base.is_some())
     }
 
     /// What it is, as a heading.

@@ -178,7 +178,7 @@ impl<'a> Evaluation<'a> {
                     Some(Level::Movement) => one.row.places[0],
                     Some(Level::Distances) => one.row.places[1],
                     Some(Level::Map) => one.row.places[2],
-                    Some(Level::Inference) | None => place,
+                    Some(Level::Inference | Level::Evaluation) | None => place,
                 };
                 with.iter().enumerate().map(unit).collect()
             };

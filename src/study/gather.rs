@@ -1,6 +1,7 @@
 //! Gather what all movements of a study gave into tables, pictures and a page.
 
-use std::path::Path;
+use std::fs;
+use std::path::{Path, PathBuf};
 
 use super::design::{Design, Section};
 use super::evaluation::Evaluation;
@@ -13,7 +14,7 @@ use super::work::{DESIGN, KEY, StudyWork, check_design};
 use crate::files::checkpoint::Checkpoints;
 use crate::files::manifest::Manifest;
 use crate::files::result_folder::ResultFolder;
-use crate::files::{FileError, one_line, read_text};
+use crate::files::{FileError, one_line, read_text, write_same_text};
 use crate::settings::Settings;
 use crate::tasks::error::ExperimentError;
 
@@ -95,6 +96,35 @@ pub(crate) fn is_finished(text: &str, plan: &[Configuration], out: &Path) -> Res
 /// Whether a folder holds a finished study.
 pub(crate) fn is_study(folder: &Path) -> bool {
     folder.join(DESIGN).is_file() && Results::are_in(folder)
+}
+
+/// Writes the tables, the pictures and the page of all configurations whose tables are in the folders of `parts`, in the order of
+/// their numbers: what is finished of a study that was run by ranges of them.
+///
+/// # Errors
+/// If there is none, one is of another design, two have the same configuration, or a file cannot be written.
+pub(crate) fn join(design: Design, text: &str, parts: &Path, out: &Path) -> Result<(), ExperimentError> {
+    let listed = fs::read_dir(parts).map_err(|error| FileError::new(parts, error.to_string()))?;
+    let mut folders: Vec<PathBuf> =
+        listed.flatten().map(|entry| entry.path()).filter(|at| is_study(at)).collect();
+    folders.sort();
+    let (mut all, mut revisions) = (Vec::new(), Vec::new());
+    for folder in &folders {
+        check_design(text, folder)?;
+        let revision = one_line(&Manifest::read(folder)?.provenance.revision);
+        all.push(Results::read(folder, design.clone(), revision.clone())?);
+        revisions.extend(Some(revision).filter(|one| !revisions.contains(one)));
+    }
+    let seed = design.seed;
+    let results = Results::joined(design, all, revisions.join(", "))
+        .ok_or_else(|| FileError::new(parts, "has no tables of this design, or two of one configuration"))?;
+    write_same_text(&out.join(DESIGN), text)?;
+    let mut folder = ResultFolder::new(out);
+    folder.remember([DESIGN.to_owned()]);
+    results.write(&mut folder)?;
+    write_rest(&results, &mut folder)?;
+    folder.write_manifest(Manifest::of_study(STUDY, seed))?;
+    Ok(())
 }
 
 /// Makes the page, the pictures and the derived tables again, from the tables and the design in a folder.

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 /// How many are drawn.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct DrawCounts {
     /// Draws of the factors at the level of the movement.
@@ -13,8 +13,11 @@ pub(crate) struct DrawCounts {
     /// For each matrix of distances, draws of the factors at the level of the body maps.
     #[serde(default = "one")]
     pub maps: usize,
-    /// For the body maps of each, draws of all other factors: one configuration each.
+    /// For the body maps of each, draws of the factors at the level of the inference.
     pub inferences: usize,
+    /// Probability with which each factor keeps the base's option; without one, all options are drawn by their weights.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub keep: Option<f64>,
 }
 
 fn one() -> usize {
@@ -24,7 +27,7 @@ fn one() -> usize {
 impl DrawCounts {
     /// Configurations at most, if that is a number.
     pub(crate) fn count(self) -> Option<usize> {
-        let Self { movements, distances, maps, inferences } = self;
+        let Self { movements, distances, maps, inferences, .. } = self;
         [movements, distances, maps, inferences].into_iter().try_fold(1_usize, usize::checked_mul)
     }
 }
@@ -41,6 +44,8 @@ pub(crate) enum Level {
     Map,
     /// What is inferred from them.
     Inference,
+    /// How that is judged: every inference is judged by all options, since that takes no time.
+    Evaluation,
 }
 
 /// Numbers of the movement, the matrix of distances and the body maps of a configuration; those with the same number share it.

@@ -22,7 +22,7 @@ mod work;
 
 pub(crate) use self::design::Design;
 pub(crate) use self::extends::DesignText;
-pub(crate) use self::gather::{gather, is_finished, is_study, redraw};
+pub(crate) use self::gather::{gather, is_finished, is_study, join, redraw};
 pub(crate) use self::plan::{Selection, plan};
 pub(crate) use self::shard::Shard;
 pub(crate) use self::work::run;

@@ -65,13 +65,16 @@ fn provenance(results: &Results) -> String {
         true => String::new(),
         false => format!("; all have `{}` instead", settings.join(", ")),
     };
+    let count = results.configurations.len();
+    let of = match results.planned > count {
+        true => format!(" of the {} of the design", results.planned),
+        false => String::new(),
+    };
     format!(
-        "**Configurations:** {}, over `reproduce/paper.toml` of revision {}{settings}. Seed {}. Made by `bodyschema study`; \
+        "**Configurations:** {}{of}, over `reproduce/paper.toml` of revision {}{settings}. Seed {}. Made by `bodyschema study`; \
          [configurations.csv](configurations.csv) says what each is, and [study.csv](study.csv) has each claim's value, n, interval and \
          verdict.\n",
-        results.configurations.len(),
-        results.revision,
-        design.seed
+        count, results.revision, design.seed
     )
 }
 

@@ -1,6 +1,7 @@
 //! Plan a study: list its configurations, named, one at a time around a base, as a full grid, or drawn evenly.
 
 use std::collections::HashMap;
+use std::ops::RangeInclusive;
 use std::str::FromStr;
 
 use toml::Table;
@@ -22,7 +23,7 @@ pub(crate) struct Configuration {
     pub name: String,
     /// What it shares with others.
     pub places: SharedStages,
-    /// The label of the option of each factor of the design; empty where it has the base's value.
+    /// The label of the option of each factor of the design; empty where it has the base's value, or later ones override it.
     pub labels: Vec<String>,
     /// What it has instead of the base's values, gains computed.
     pub changes: Table,
@@ -30,7 +31,7 @@ pub(crate) struct Configuration {
     pub settings: Settings,
 }
 
-/// The configurations that `--only` selects: those of a number, a name, or a factor.
+/// The configurations that `--only` selects: those of a number, a name, a range of drawn movements, or a factor.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Selection(String);
 
@@ -59,6 +60,7 @@ pub(crate) fn plan(design: &Design) -> Result<Vec<Configuration>, ExperimentErro
         }
         (Some(Vary::Grid), None) => {
             let made = combinations(design).into_iter().enumerate().map(|(at, options)| {
+                let options: Vec<Option<usize>> = options.into_iter().map(Some).collect();
                 let choices = chosen(design, &options);
                 let name = choices
                     .iter()
@@ -93,6 +95,7 @@ pub(crate) fn plan(design: &Design) -> Result<Vec<Configuration>, ExperimentErro
                     why: String::new(),
                     settings: named.settings.clone(),
                     gains: None,
+                    weight: None,
                 };
                 let made =
                     configuration(design, at, named.name.clone(), UNNUMBERED, design.seed, &[Some(&choice)])?;
@@ -112,8 +115,9 @@ pub(crate) fn plan(design: &Design) -> Result<Vec<Configuration>, ExperimentErro
 const UNNUMBERED: SharedStages = SharedStages { movement: 1, distances: 1, maps: 1 };
 
 /// The options of a drawn configuration or of one of a grid.
-fn chosen<'a>(design: &'a Design, options: &[usize]) -> Vec<Option<&'a Choice>> {
-    let choice = |(factor, &option): (&'a Factor, &usize)| Some(&factor.options[option]);
+fn chosen<'a>(design: &'a Design, options: &[Option<usize>]) -> Vec<Option<&'a Choice>> {
+    let choice =
+        |(factor, option): (&'a Factor, &Option<usize>)| option.map(|option| &factor.options[option]);
     design.factors.iter().zip(options).map(choice).collect()
 }
 
@@ -232,10 +236,15 @@ impl Selection {
         all: Vec<Configuration>,
     ) -> Result<Vec<Configuration>, ExperimentError> {
         let Self(wanted) = self;
+        let range = wanted.strip_prefix("movements-").and_then(|range| range.split_once('-'));
+        let range: Option<RangeInclusive<usize>> =
+            range.and_then(|(first, last)| Some(first.parse().ok()?..=last.parse().ok()?));
+        let range = range.filter(|_| design.draws.is_some());
         let factor = design.factors.iter().position(|factor| factor.name == *wanted);
         let factor = factor.filter(|_| design.vary == Some(Vary::OneAtATime));
         let named = |one: &Configuration| {
             one.number.to_string() == *wanted
+                || range.as_ref().is_some_and(|range| range.contains(&one.places.movement))
                 || one.name == *wanted
                 || factor.is_some_and(|at| !one.labels[at].is_empty())
         };
@@ -244,7 +253,9 @@ impl Selection {
                 Some(Vary::OneAtATime) => design.factors.iter().map(|factor| factor.name.as_str()).collect(),
                 _ => Vec::new(),
             };
-            let or = if factors.is_empty() {
+            let or = if design.draws.is_some() {
+                ", or a range of drawn movements, such as movements-1-8".to_owned()
+            } else if factors.is_empty() {
                 String::new()
             } else {
                 format!(", or a factor: {}", factors.join(", "))

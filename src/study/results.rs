@@ -9,7 +9,7 @@ use serde_json::{Map, Value};
 use super::design::{COLUMNS, Design, JudgedClaim, Section};
 use super::measures::{MeasureRow, Measured};
 use super::outcome::Outcome;
-use super::plan::Configuration;
+use super::plan::{Configuration, plan};
 use crate::analysis::cells::EstimateCells;
 use crate::analysis::claims::{Verdict, judge_claim};
 use crate::analysis::measure::Evidence;
@@ -101,6 +101,8 @@ pub(super) struct Results {
     pub design: Design,
     /// Revision of the program that ran it.
     pub revision: String,
+    /// Number of configurations of the design, of which these may be a part.
+    pub planned: usize,
     /// Its configurations.
     pub configurations: Vec<ConfigurationRow>,
     /// By configuration, then in the order of the design's claims.
@@ -122,14 +124,7 @@ pub(super) struct Gathering {
 impl Gathering {
     /// Of a design, by this program.
     pub(super) fn new(design: Design) -> Self {
-        let results = Results {
-            design,
-            revision: env!("BODYSCHEMA_REVISION").to_owned(),
-            configurations: Vec::new(),
-            claims: Vec::new(),
-            measures: Vec::new(),
-            headline: Vec::new(),
-        };
+        let results = Results::empty(design, env!("BODYSCHEMA_REVISION").to_owned());
         Self { results, published: claims(), first: None }
     }
 
@@ -336,7 +331,27 @@ impl Results {
             if design.has(Section::Factors) { read_rows(&folder.join(MEASURES))? } else { Vec::new() };
         let headline =
             if design.has(Section::Shares) { read_rows(&folder.join(HEADLINE_SAMPLES))? } else { Vec::new() };
-        Ok(Self { design, revision, configurations, claims, measures, headline })
+        Ok(Self { configurations, claims, measures, headline, ..Self::empty(design, revision) })
+    }
+
+    /// Those of several parts together, by number; `None` without any, or if two parts have the same configuration.
+    pub(super) fn joined(design: Design, mut parts: Vec<Self>, revision: String) -> Option<Self> {
+        parts.sort_by_key(|part| part.configurations[0].number);
+        let mut all = Self::empty(design, revision);
+        for part in parts {
+            all.configurations.extend(part.configurations);
+            all.claims.extend(part.claims);
+            all.measures.extend(part.measures);
+            all.headline.extend(part.headline);
+        }
+        let rising = all.configurations.is_sorted_by(|one, next| one.number < next.number);
+        (rising && !all.configurations.is_empty()).then_some(all)
+    }
+
+    fn empty(design: Design, revision: String) -> Self {
+        let planned = plan(&design).map_or(0, |all| all.len());
+        let (configurations, claims, measures, headline) = Default::default();
+        Self { design, revision, planned, configurations, claims, measures, headline }
     }
 
     /// The claims of a configuration, by its place in the table, in the order of the design.

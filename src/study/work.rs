@@ -19,6 +19,7 @@ use crate::files::manifest::Manifest;
 use crate::files::{FileError, read_text, sha256_of_text, write_same_text};
 use crate::pipeline::{Condition, Record};
 use crate::settings::Settings;
+use crate::stages::evaluate::is_eligible;
 use crate::stages::schema::Model;
 use crate::stages::simulate::Resolution;
 use crate::tasks::batch::{Batch, Outcome as TaskOutcome, TaskOutput};
@@ -106,6 +107,8 @@ pub(super) struct StudyWork {
     movements: Vec<Movement>,
     /// Of each configuration: its tasks, with the movement that each belongs to and its p.
     tasks_of: Vec<Vec<(usize, String, f64)>>,
+    /// Of each configuration the least ARI of an eligible sample.
+    eligible: Vec<f64>,
 }
 
 /// A movement and what is inferred from it.
@@ -134,7 +137,7 @@ struct StoredSamples {
     samples: Vec<StoredSample>,
 }
 
-/// Chain, sweep, parts, log posterior, ARI, whether it is eligible, and whether its tree is right.
+/// Chain, sweep, parts, log posterior, ARI, whether the number of parts is right, and whether the tree is.
 type StoredSample = (usize, usize, usize, Option<f64>, f64, bool, bool);
 
 impl StudyWork {
@@ -171,6 +174,7 @@ impl StudyWork {
             checkpoints,
             movements: groups.iter().map(movement).collect(),
             tasks_of: of.into_iter().map(|range| range.map(place).collect()).collect(),
+            eligible: plan.iter().map(|one| one.settings.evaluate.eligible_ari).collect(),
         }
     }
 
@@ -226,7 +230,7 @@ impl StudyWork {
                 match kept.get(name) {
                     None => drop(missing.insert(*movement)),
                     Some(Ok(gave)) => {
-                        outcome.records.extend(gave.records());
+                        outcome.records.extend(gave.records(self.eligible[at]));
                         outcome.resolution = outcome.resolution.worse(gave.resolution);
                     }
                     Some(Err(reason)) => {
@@ -279,11 +283,12 @@ impl TaskResult {
         Self { resolution: found.resolution, samples }
     }
 
-    fn records(&self) -> impl Iterator<Item = Record> + '_ {
-        self.samples.iter().flat_map(|StoredSamples { simulation, condition, samples }| {
+    /// The samples, of which those count that have the right number of parts and at least this ARI.
+    fn records(&self, eligible_ari: f64) -> impl Iterator<Item = Record> + '_ {
+        self.samples.iter().flat_map(move |StoredSamples { simulation, condition, samples }| {
             let Condition { model, coordination, dimension } = *condition;
-            samples.iter().map(move |&(chain, sweep, parts, log_posterior, ari, eligible, tree_correct)| {
-                Record {
+            samples.iter().map(
+                move |&(chain, sweep, parts, log_posterior, ari, right_parts, tree_correct)| Record {
                     simulation: *simulation,
                     coordination,
                     dimension,
@@ -293,10 +298,10 @@ impl TaskResult {
                     parts,
                     log_posterior,
                     ari,
-                    eligible,
+                    eligible: right_parts && is_eligible(ari, eligible_ari),
                     tree_correct,
-                }
-            })
+                },
+            )
         })
     }
 }
@@ -325,7 +330,9 @@ fn task(settings: &Settings, coordination: f64, simulation: usize) -> Task {
     }
     let mut settings = settings.clone();
     settings.motion.coordination = coordination;
-    // What else is run does not change the results.
+    // What else is run does not change the results, nor does the ARI from which on a sample counts: here all with the right
+    // number of parts count.
+    settings.evaluate.eligible_ari = 0.0;
     settings.experiment.simulations = 1;
     settings.experiment.dimensions = vec![last.dimension];
     settings.experiment.coordinations = vec![coordination];

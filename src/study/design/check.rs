@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 
 use super::super::choices::value_of;
-use super::super::levels::DrawCounts;
+use super::super::levels::{DrawCounts, Level};
 use super::{BASE, COLUMNS, Choice, Design, Factor, JudgedClaim, Section, Vary};
 use crate::analysis::published::{Claim, claims};
 use crate::settings::Settings;
@@ -134,15 +134,49 @@ impl Design {
             self.factors.iter().find(|factor| self.draws.is_some() && factor.level.is_none())
         {
             return Err(format!(
-                "has a factor `{}` without `level`; with [draws] it must be movement, distances, map or inference",
+                "has a factor `{}` without `level`; with [draws] it must be movement, distances, map, inference or evaluation",
                 factor.name
             ));
         }
+        self.check_draws()?;
         if self.vary == Some(Vary::OneAtATime) {
             let paper = Settings::paper();
             self.factors.iter().try_for_each(|factor| factor.check_alone(&paper))?;
         }
         self.check_gains()
+    }
+
+    /// Whether options can be drawn, and what is left out is there.
+    fn check_draws(&self) -> Result<(), String> {
+        if let Some(keep) = self.draws.and_then(|draws| draws.keep).filter(|keep| !(0.0..1.0).contains(keep))
+        {
+            return Err(format!("has `draws.keep` = {keep}; use a probability from 0 to below 1"));
+        }
+        for factor in &self.factors {
+            for option in &factor.options {
+                if option.weight == Some(0) {
+                    return Err(format!(
+                        "has `{}` with weight 0; use at least 1, or remove it",
+                        option.label
+                    ));
+                }
+                let judges = factor.level != Some(Level::Evaluation)
+                    || option.keys().iter().all(|key| key.starts_with("evaluate."));
+                if !judges {
+                    return Err(format!(
+                        "has `{}` at the level evaluation, where only settings of `evaluate` can be",
+                        option.label
+                    ));
+                }
+            }
+        }
+        let paper = Settings::paper();
+        let named = self.left_out.iter().flat_map(|one| &one.what);
+        let key = |what: &&String| value_of(&paper, what.split(" = ").next().unwrap_or_default()).is_none();
+        match named.into_iter().find(key) {
+            Some(unknown) => Err(format!("leaves out `{unknown}`, which is not a setting")),
+            None => Ok(()),
+        }
     }
 
     /// Whether gains come from one place alone.

@@ -170,7 +170,7 @@ fn with_ends(share: Option<f64>, ends: Option<(f64, f64)>, open: &str, close: &s
 
 /// How configurations were drawn.
 fn drawn(draws: DrawCounts) -> String {
-    let DrawCounts { movements, distances, maps, inferences } = draws;
+    let DrawCounts { movements, distances, maps, inferences, .. } = draws;
     format!(
         "There are {movements} movements, of each {distances} matrices of distances, of each {maps} kinds of body map, of each \
          {inferences} ways to infer. They are drawn evenly from all combinations of the options below, by a scrambled Sobol sequence. \
