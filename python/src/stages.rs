@@ -94,7 +94,6 @@ pub(crate) fn score(
         )));
     }
     let tree: Vec<Edge> = tree.into_iter().map(|(child, parent)| Edge { child, parent }).collect();
-    let score =
-        evaluate::score(&labels, &tree, &Truth::new(true_labels, true_tree), eligible_ari);
+    let score = evaluate::score(&labels, &tree, &Truth::new(true_labels, true_tree), eligible_ari);
     Ok((score.ari, score.eligible, score.tree_correct))
 }
