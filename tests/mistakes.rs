@@ -53,7 +53,7 @@ fn a_mistake_is_one_line_that_says_what_and_where_and_status_2() {
         ("short.csv", "sensor,part\n0,0\n"),
         ("word.csv", "a,b\n1,2\n3,x\n"),
         ("commas.csv", "1,05,2,75\n3,25,4,00\n"),
-        ("cut.csv", "1;2\n3;4\n5\n"),
+        ("cut.csv", "1;2\n3;4\n5;6\n7\n"),
         ("times.csv", "time\n1\n2\n"),
         ("file", ""),
         ("no-figure/figures/README.md", ""),
@@ -144,7 +144,7 @@ fn a_mistake_is_one_line_that_says_what_and_where_and_status_2() {
         ("estimate commas.csv --out s", "row 1, column 2: `05` seems to be the decimals of the cell before"),
         (
             "estimate cut.csv --out s",
-            "row 3 has 1 cells, but the first row of numbers has 2; repair or delete",
+            "row 4 has 1 cells, but the first row of numbers has 2; repair or delete",
         ),
         (
             "estimate times.csv --out s",
