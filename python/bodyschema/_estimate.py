@@ -281,7 +281,8 @@ def estimate(
     ----------
     touch : array-like of shape (T, M), or the path of a file
         Pressures of M sensors at T samples, in any unit; 12 to 20,000 sensors. NaN where there is no value. The path of a
-        table, a `.npy` file or an `.npz` archive will do. A float32 or float64 array is read where it is, in any order of memory, and is not changed.
+        table, a `.npy` file or an `.npz` archive will do. A float32 or float64 array is read where it is, in any order of memory,
+        and is not changed.
     interval : float, optional
         Time between two samples, s. It only labels the time. By default that of the column of times of a file.
     signed : bool, optional

@@ -32,15 +32,13 @@ fn matrix<'py, T: Element>(array: &Bound<'py, PyAny>) -> PyResult<Option<PyReado
 }
 
 /// Pressures, T × M float32 or float64 in any order of memory, as one series after the other: each value is read once, where it is.
-/// What is no finite float32 becomes NaN.
+/// What is beyond float32 becomes infinite, as from a file.
 pub(crate) fn touch(threads: &Threads, array: &Bound<'_, PyAny>) -> PyResult<Tactile> {
     if let Some(array) = matrix::<f32>(array)? {
-        let convert = |value: f32| if value.is_finite() { value } else { f32::NAN };
-        return series(threads, array.py(), array.as_array(), convert);
+        return series(threads, array.py(), array.as_array(), |value| value);
     }
     if let Some(array) = matrix::<f64>(array)? {
-        let convert = |value: f64| if value.abs() <= f64::from(f32::MAX) { value as f32 } else { f32::NAN };
-        return series(threads, array.py(), array.as_array(), convert);
+        return series(threads, array.py(), array.as_array(), |value| value as f32);
     }
     Err(value_error("touch must be a float32 or float64 array of two dimensions, a row for each sample"))
 }
@@ -103,7 +101,7 @@ pub(crate) fn check_memory<T>(rows: usize, columns: usize) -> PyResult<()> {
 /// The same pressures as the stages of the paper take them: finite, and not negative.
 pub(crate) fn felt(threads: &Threads, array: &Bound<'_, PyAny>) -> PyResult<Tactile> {
     let tactile = touch(threads, array)?;
-    match tactile.pressures.iter().position(|pressure| pressure.is_nan() || *pressure < 0.0) {
+    match tactile.pressures.iter().position(|pressure| !pressure.is_finite() || *pressure < 0.0) {
         None => Ok(tactile),
         Some(at) => Err(value_error(format!(
             "touch[{}, {}] is {}, but a pressure must be a finite number and not negative",

@@ -87,6 +87,14 @@ def test_an_array_is_neither_copied_nor_changed(moved, monkeypatch, order, dtype
     assert same(touch, before)
 
 
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+def test_infinite_values_are_missing_and_counted(moved, dtype):
+    touch = moved.touch.astype(dtype)
+    touch[3, 5] = np.inf
+    with pytest.warns(bodyschema.RecordingWarning, match="^1 values are infinite, and count as missing"):
+        bodyschema.estimate(touch)
+
+
 def test_masked_values_are_missing(moved):
     touch = np.ma.array(moved.touch, mask=np.zeros(moved.touch.shape, dtype=bool))
     touch[:, 4] = np.ma.masked
