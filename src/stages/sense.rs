@@ -4,7 +4,8 @@
 //!
 //! The paper's fluid has no viscosity: a sensor feels ρ (ṗ · n)² where it moves outward, along its normal
 //! n, and nothing otherwise. The velocity ṗ is the backward difference of its position over Δt, the
-//! normal is that of the later sample.
+//! normal is that of the later sample. A movement that has [`Instants`](crate::stages::simulate::Instants) is felt at each sample instead:
+//! the difference is over a moment.
 
 use rayon::prelude::*;
 
@@ -13,7 +14,7 @@ use serde::{Deserialize, Serialize};
 use crate::numerics::range::{Checked, gain, moderate, positive};
 use crate::numerics::simd::vectorised;
 use crate::stages::agent::{Agent, Site, Vector3};
-use crate::stages::simulate::{Pose, Trajectory};
+use crate::stages::simulate::{Instants, Pose, Trajectory};
 
 /// The tactile sense (equation 27).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -96,12 +97,18 @@ const BLOCK: usize = 64;
 /// Rᵀ (R − R') / Δt.
 type Motion = [[f64; BLOCK]; 12];
 
-fn motion(trajectory: &Trajectory, part: usize, interval: f64) -> Vec<Motion> {
-    let poses: Vec<&Pose> = trajectory.poses[part..].iter().step_by(trajectory.parts).collect();
+fn motion<'a>(trajectory: &'a Trajectory, part: usize, interval: f64) -> Vec<Motion> {
+    let (before, time) = match &trajectory.instants {
+        Some(Instants { before, moment }) => (before, *moment),
+        None => (&trajectory.poses, interval),
+    };
+    let own = |poses: &'a [Pose]| poses[part..].iter().step_by(trajectory.parts).collect::<Vec<_>>();
+    let (before, now) = (own(before), own(&trajectory.poses));
     let mut blocks = vec![[[0.0; BLOCK]; 12]; trajectory.samples().div_ceil(BLOCK)];
-    blocks.par_iter_mut().zip(poses.par_windows(2).chunks(BLOCK)).for_each(|(block, pairs)| {
-        for (lane, pair) in pairs.into_iter().enumerate() {
-            for (numbers, number) in block.iter_mut().zip(shared(pair[0], pair[1], interval)) {
+    let pairs = before.par_chunks(BLOCK).zip(now[1..].par_chunks(BLOCK));
+    blocks.par_iter_mut().zip(pairs).for_each(|(block, (before, now))| {
+        for (lane, (before, now)) in before.iter().zip(now).enumerate() {
+            for (numbers, number) in block.iter_mut().zip(shared(before, now, time)) {
                 numbers[lane] = number;
             }
         }

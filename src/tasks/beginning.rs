@@ -21,6 +21,8 @@ pub(crate) fn beginning(whole: &Trajectory, settings: &Settings) -> Trajectory {
     Trajectory {
         poses: whole.poses[..states * whole.parts].to_vec(),
         angles: whole.angles[..states * whole.joints].to_vec(),
+        // Experiments feel over Δt, as the paper does.
+        instants: None,
         ..*whole
     }
 }

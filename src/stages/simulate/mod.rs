@@ -14,7 +14,7 @@ mod settings;
 #[allow(unsafe_code, reason = "the physics engine is a C library")]
 mod world;
 
-pub use self::movement::{Resolution, Trajectory, simulate};
+pub use self::movement::{Instants, Resolution, Trajectory, simulate};
 pub use self::settings::{
     AngleError, AngularMomentum, Controller, Motion, Movement, Physics, Rhythm, Targets,
 };

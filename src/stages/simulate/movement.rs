@@ -17,10 +17,21 @@ pub struct Trajectory {
     pub joints: usize,
     /// (T + 1) × parts, by time: the pose of each part at 0, Δt, 2Δt, …
     pub poses: Vec<Pose>,
+    /// Poses a moment before each sample but the first, if speeds are to be felt at the samples, and not over Δt.
+    pub instants: Option<Instants>,
     /// (T + 1) × joints, by time: the angles of each joint, rad in [−π, π]; those that it does not have are 0.
     pub angles: Vec<Vector3>,
     /// How well the physics step resolved it.
     pub resolution: Resolution,
+}
+
+/// Where the parts are a moment before each sample: what a speed at the sample is the backward difference of.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Instants {
+    /// T × parts, by time.
+    pub before: Vec<Pose>,
+    /// The moment, s.
+    pub moment: f64,
 }
 
 /// How well the physics step resolves a movement: the largest value over all steps.
@@ -98,7 +109,7 @@ pub fn simulate(
         joints,
         poses: Vec::with_capacity((samples + 1) * parts),
         angles: Vec::with_capacity((samples + 1) * joints),
-        resolution: Resolution::default(),
+        ..Trajectory::default()
     };
     for step in 0..=samples * steps_per_sample {
         if step % steps_per_sample == 0 {

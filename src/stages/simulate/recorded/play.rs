@@ -6,7 +6,7 @@ use std::ops::Range;
 use nalgebra::{Isometry3, Vector3 as Column};
 use rayon::prelude::*;
 
-use super::super::movement::{Resolution, Trajectory};
+use super::super::movement::{Instants, Resolution, Trajectory};
 use super::super::world::Pose;
 use super::angles::angles;
 use super::attach::Attached;
@@ -14,6 +14,9 @@ use super::between::local_at;
 use super::skeleton::RecordedMovement;
 use crate::stages::agent::{Agent, Joint, Part, Vector3};
 
+/// The moment over which a speed is felt, in samples. A part turns so little meanwhile that the speeds of its points are those of a rigid
+/// body. Over a whole sample they are not: the difference of two poses has second-order terms in the turn between them.
+const MOMENT: f64 = 1e-3;
 /// Largest rotation, rad, and distance, m, of a part on another that counts as none: what rounding leaves.
 const STILL: (f64, f64) = (1e-4, 1e-5);
 
@@ -34,7 +37,7 @@ pub fn samples(movement: &RecordedMovement, frames: &Range<usize>, interval: f64
 }
 
 /// The movement of `agent` over `frames` of a recording, sampled every `interval` (s) from the first of them on: the initial pose
-/// and `samples` more.
+/// and `samples` more. Speeds are those at the samples.
 ///
 /// The [`Resolution`] says how far joints come apart, which are no single points in the recording, and the largest turn of a part
 /// between two samples.
@@ -48,17 +51,26 @@ pub fn play(
 ) -> Trajectory {
     // 1 exactly, if it is the frame time: then all samples are frames.
     let step = interval / movement.frame_time();
+    let placed_at = |time: f64| {
+        movement.placed(|joint| local_at(movement, frames, joint, frames.start as f64 + time * step))
+    };
     let sampled: Vec<(Vec<Pose>, Vec<Vector3>, f64)> = (0..=samples)
         .into_par_iter()
         .map(|sample| {
-            let time = frames.start as f64 + sample as f64 * step;
-            let placed = movement.placed(|joint| local_at(movement, frames, joint, time));
+            let placed = placed_at(sample as f64);
             let separation = separation(agent, attached, &placed);
             (poses(agent, attached, &placed), joint_angles(agent, attached, &placed), separation)
         })
         .collect();
-    let mut trajectory =
-        Trajectory { parts: agent.parts.len(), joints: agent.joints.len(), ..Trajectory::default() };
+    let before = (1..=samples).into_par_iter();
+    let before =
+        before.map(|sample| poses(agent, attached, &placed_at(sample as f64 - MOMENT))).collect::<Vec<_>>();
+    let mut trajectory = Trajectory {
+        parts: agent.parts.len(),
+        joints: agent.joints.len(),
+        instants: Some(Instants { before: before.concat(), moment: MOMENT * interval }),
+        ..Trajectory::default()
+    };
     for (poses, angles, anchor_separation) in sampled {
         let before = trajectory.poses.len().checked_sub(poses.len()).map(|at| &trajectory.poses[at..]);
         let pairs = before.into_iter().flatten().zip(&poses);
