@@ -7,10 +7,11 @@
 //! so that their union is shorter than both.
 
 use faer::Mat;
-use nalgebra::{DMatrix, SMatrix};
+use nalgebra::DMatrix;
 
 use super::als::Als;
 use super::factorisation::{MAX_RANK, principal_axes};
+use super::log_determinant::log_determinant;
 use super::roots::{Roots, columns, product};
 use super::stratified::stratified;
 use crate::numerics::eigen::largest;
@@ -18,8 +19,7 @@ use crate::numerics::eigen::largest;
 /// Sensors of a cluster that its motion is learned from, spread over all.
 const MAX_SENSORS: usize = 48;
 /// Iterations in which the motion of a cluster is learned, and more where it is in doubt whether one motion explains it.
-const ITERATIONS: usize = 8;
-const MORE_ITERATIONS: usize = 24;
+pub(super) const ITERATIONS: [usize; 2] = [8, 24];
 /// Iterations in which c of other sensors is found from given w.
 const LOADING_ITERATIONS: usize = 2;
 /// Weight of a completed root, in both: so small that it decides only where informative roots do not.
@@ -29,6 +29,8 @@ const MOMENTUM: [f64; 2] = [0.5, 0.98];
 const PACE: [f64; 2] = [1.1, 0.5];
 /// The least tolerance: what the iterations leave.
 pub(super) const LEAST_TOLERANCE: f64 = 3e-4;
+/// Degrees of freedom of its residual that a part must have per sample. With fewer, any sensors fit.
+pub(super) const MIN_FREEDOM: f64 = 1.0;
 /// Leverage above which a sensor spans a component alone: all others together tell less than a tenth of it.
 const LEVERAGE: f64 = 0.9;
 /// How many times the tolerance the variance of a component is at least.
@@ -40,8 +42,12 @@ pub(super) struct Felt {
     pub roots: Roots,
     /// Samples × sensors: the roots where they are felt, and elsewhere what completes them.
     pub completed: Mat<f64>,
+    /// The size that the roots at each sample were divided by.
+    pub sizes: Vec<f64>,
     /// Residual variance that is encoded as noise is.
     pub tolerance: f64,
+    /// Iterations in which the motion of a cluster is learned, and more where it is in doubt whether one motion explains it.
+    pub iterations: [usize; 2],
 }
 
 /// A cluster of sensors.
@@ -107,7 +113,7 @@ impl Cluster {
             description_length: 0.0,
             is_learned: false,
         };
-        cluster.learn(felt, ITERATIONS, WEIGHTS[0]);
+        cluster.learn(felt, felt.iterations[0], WEIGHTS[0]);
         cluster
     }
 
@@ -129,10 +135,22 @@ impl Cluster {
         }
     }
 
+    /// Learns the motion of sensors with the largest rank.
+    pub(super) fn widest(felt: &Felt, sensors: Vec<usize>) -> Self {
+        Self::of_rank(felt, sensors, MAX_RANK)
+    }
+
+    /// The same in more iterations.
+    pub(super) fn converged(felt: &Felt, sensors: Vec<usize>) -> Self {
+        let mut cluster = Self::widest(felt, sensors);
+        cluster.learn_more(felt);
+        cluster
+    }
+
     /// Learns the motion in more iterations.
     pub(super) fn learn_more(&mut self, felt: &Felt) {
         if !self.is_learned || self.variance() > felt.tolerance {
-            self.learn(felt, MORE_ITERATIONS, WEIGHTS[1]);
+            self.learn(felt, felt.iterations[1], WEIGHTS[1]);
             self.is_learned = true;
         }
     }
@@ -158,6 +176,13 @@ impl Cluster {
     /// How many components are more than residual.
     pub(super) fn present(&self, tolerance: f64) -> usize {
         self.components.iter().filter(|variance| **variance > PRESENT * tolerance).count()
+    }
+
+    /// Whether two clusters have components in common: their union has fewer than both. What is below the least tolerance may be an error
+    /// of the model, and is no component.
+    pub(super) fn have_common(a: &Self, b: &Self, union: &Self, tolerance: f64) -> bool {
+        let present = |own: &Self| own.present(tolerance.max(LEAST_TOLERANCE));
+        present(union) < present(a) + present(b)
     }
 
     /// Residual variance of an informative root.
@@ -272,38 +297,10 @@ fn complete(completed: &mut Mat<f64>, roots: &Roots, loadings: &Mat<f64>, motion
     }
 }
 
-/// What a root that is not felt tells of w, as a share of what one tells that is felt: all where the tolerance is the least, since it
-/// is completed as exactly, and next to nothing with noise.
+/// What a root that is not felt tells of w, as a share of what one tells that is felt: all where the tolerance is the least or lower,
+/// since it is completed as exactly, and next to nothing with noise.
 fn told_by_censored(tolerance: f64) -> f64 {
-    (LEAST_TOLERANCE / tolerance).powi(2)
-}
-
-/// ln det(I + scale · Σ c cᵀ cov(w)) on average over samples, where the sum is over the roots at a sample, and one that is not felt
-/// counts `censored`, and one that is missing nothing. In: the roots of some sensors, and their c, for which each component of w has a variance of 1.
-fn log_determinant(roots: &Roots, whitened: &Mat<f64>, scale: f64, censored: f64) -> f64 {
-    let k = whitened.ncols();
-    let row = |sensor| std::array::from_fn(|at| if at < k { whitened[(sensor, at)] } else { 0.0 });
-    let rows: Vec<[f64; MAX_RANK]> = (0..whitened.nrows()).map(row).collect();
-    let of_sample = |t: usize| {
-        let mut matrix = [[0.0; MAX_RANK]; MAX_RANK];
-        for (sensor, c) in rows.iter().enumerate() {
-            let root = roots.values[(t, sensor)];
-            let told = if root.is_nan() { 0.0 } else { censored };
-            let weight = if root >= roots.thresholds[t] { scale } else { scale * told };
-            for (i, row) in matrix.iter_mut().enumerate() {
-                (0..=i).for_each(|j| row[j] += weight * c[i] * c[j]);
-            }
-        }
-        log_determinant_with_identity(matrix)
-    };
-    (0..roots.samples()).map(of_sample).sum::<f64>() / roots.samples() as f64
-}
-
-/// ln det(I + A) of a positive semidefinite A, of which the lower triangle is given.
-fn log_determinant_with_identity(matrix: [[f64; MAX_RANK]; MAX_RANK]) -> f64 {
-    let matrix =
-        SMatrix::identity() + SMatrix::<f64, MAX_RANK, MAX_RANK>::from_fn(|i, j| matrix[i.max(j)][i.min(j)]);
-    matrix.cholesky().map_or(f64::INFINITY, |factor| factor.ln_determinant())
+    f64::min(1.0, LEAST_TOLERANCE / tolerance).powi(2)
 }
 
 /// c of the same c · w, for which the components of w are uncorrelated, and each has a variance of 1.
@@ -353,20 +350,6 @@ fn solved(squares: &Mat<f64>, products: &Mat<f64>) -> Mat<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn what_is_felt_tells_more_of_the_motion() {
-        // Two sensors of one component, of which the second is felt at one of two samples.
-        let values = Mat::from_fn(2, 2, |t, sensor| if (t, sensor) == (1, 1) { 0.0 } else { 1.0 });
-        let roots = Roots { values, thresholds: vec![0.5; 2], signed: false };
-        let found = log_determinant(&roots, &Mat::from_fn(2, 1, |sensor, _| [1.0, 2.0][sensor]), 10.0, 0.02);
-        let expected = ((1.0_f64 + 10.0 * 5.0).ln() + (1.0_f64 + 10.0 * (1.0 + 0.02 * 4.0)).ln()) / 2.0;
-        assert!((found - expected).abs() < 1e-12, "{found} {expected}");
-        // A = x xᵀ + 3 y yᵀ for orthogonal x and y.
-        let (x, y) = ([1.0, 2.0, 0.0, 0.0, 0.0, 0.0], [2.0, -1.0, 0.0, 0.0, 1.0, 0.0]);
-        let matrix = std::array::from_fn(|i| std::array::from_fn(|j| x[i] * x[j] + 3.0 * y[i] * y[j]));
-        assert!((log_determinant_with_identity(matrix) - (6.0_f64 * 19.0).ln()).abs() < 1e-12);
-    }
 
     #[test]
     fn a_sensor_that_spans_a_component_alone_has_a_leverage_of_one() {

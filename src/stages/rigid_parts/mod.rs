@@ -7,7 +7,8 @@
 //! subspace of rank six or less, where they are not censored at 0. That is motion segmentation (Costeira and Kanade 1998). The
 //! censored matrix is completed first (Saul 2022); affinities between sensors follow from its right singular vectors; and
 //! clusters of high affinity are merged by description length (Ma et al. 2007) and refined by K-subspaces (Bradley and
-//! Mangasarian 2000). `docs/estimate.md` has the theory; the stage [`joints`](super::joints) continues with the result.
+//! Mangasarian 2000). Where the data are exact, clusters that one motion explains only nearly are separated into parts that hardly
+//! move against each other. `docs/estimate.md` has the theory; the stage [`joints`](super::joints) continues with the result.
 
 mod als;
 mod cluster;
@@ -17,11 +18,15 @@ mod factorisation;
 #[cfg(test)]
 pub(crate) mod fixtures;
 mod floor;
+mod halves;
+mod log_determinant;
 mod medians;
 mod parts;
+mod pieces;
 mod regressions;
 mod roots;
 mod search;
+mod separation;
 mod stratified;
 mod subspace;
 

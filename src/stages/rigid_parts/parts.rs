@@ -8,23 +8,20 @@ use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 
-use super::cluster::{Cluster, Felt};
+use super::cluster::{Cluster, Felt, ITERATIONS, MIN_FREEDOM};
 use super::completion::Completion;
 use super::faces::similar;
 use super::floor::{floors, telling_samples, typical_floor};
 use super::medians::typical_size;
 use super::roots::{Roots, is_signed};
 use super::search::Search;
+use super::separation::BETTER;
 use super::subspace::{Loadings, MotionSubspace, ROTATION_RANK};
 use crate::numerics::partition::named_by_appearance;
 use crate::stages::sense::Tactile;
 
 /// Samples that parts are searched on, spread over all at which anything is felt.
 const MAX_SAMPLES: usize = 1500;
-/// Degrees of freedom of its residual that a part must have per sample. With fewer, any sensors fit.
-const MIN_FREEDOM: f64 = 1.0;
-/// Residual of a sensor by a part, as a share of that by any other, up to which it is on that part.
-const BETTER: f64 = 0.2;
 
 /// The part of each of M sensors, and how well its motion explains what the sensor feels.
 ///
@@ -72,7 +69,8 @@ pub fn rigid_parts(tactile: &Tactile, sensors: &[usize]) -> RigidParts {
     let every = every.equalised(&sizes, floor);
     let roots = every.select_as_they_are(sensors);
     let completion = Completion::new(&roots);
-    let felt = Felt { roots, completed: completion.velocities, tolerance: 0.0 };
+    let felt =
+        Felt { roots, completed: completion.velocities, sizes, tolerance: 0.0, iterations: ITERATIONS };
     let mut search = Search::new(felt, completion.affinities);
     let mut parts = parts_of(search.clusters());
     if parts.is_empty() {

@@ -9,7 +9,6 @@ use kodama::Method;
 use rayon::prelude::*;
 
 use super::cluster::{Cluster, Felt, LEAST_TOLERANCE};
-use super::factorisation::MAX_RANK;
 use super::medians::median;
 use crate::numerics::linkage::largest_clusters;
 
@@ -24,23 +23,23 @@ const PIECE: f64 = 0.6;
 /// Clusters of highest affinity that a cluster may merge with.
 const NEIGHBOURS: usize = 5;
 /// Nats per sample that a merge must save, and a cluster against two pieces of it.
-const MIN_SAVING: f64 = 0.3;
+pub(super) const MIN_SAVING: f64 = 0.3;
 /// Largest residual variance of a part, and of a seed cluster, in units of the tolerance.
-const EXPLAINED: f64 = 5.0;
+pub(super) const EXPLAINED: f64 = 5.0;
 const MIXED: f64 = 10.0;
 /// The same of a sensor that is in no cluster. With noise it is more than any residual.
 const LEFT: f64 = 30.0;
 /// The tolerance, the residual variance that is encoded as noise is: the least and the largest.
 const TOLERANCE: [f64; 2] = [LEAST_TOLERANCE, 5e-2];
 /// Fewest sensors of a cluster.
-const MIN_CLUSTER: usize = 4;
+pub(super) const MIN_CLUSTER: usize = 4;
 /// Most iterations in which sensors are assigned, and of merging and assigning.
 const MAX_ASSIGNMENTS: usize = 3;
 const MAX_ALTERNATIONS: usize = 4;
 
 /// Sensors whose clusters are searched for.
 pub(super) struct Search {
-    felt: Felt,
+    pub(super) felt: Felt,
     /// Affinities between sensors, sensors × sensors, 0 to 1.
     affinities: Mat<f64>,
 }
@@ -71,8 +70,10 @@ impl Search {
             }
             before = now;
         }
-        clusters.par_iter_mut().for_each(|own| own.learn_well(&self.felt));
-        clusters
+        self.separated(&clusters).unwrap_or_else(|| {
+            clusters.par_iter_mut().for_each(|own| own.learn_well(&self.felt));
+            clusters
+        })
     }
 
     /// The residual variance that is still explained, of a sensor that is in no cluster.
@@ -89,7 +90,7 @@ impl Search {
     fn seed_clusters(&mut self, sensors: &[usize]) -> Vec<Cluster> {
         let seeds = self.seeds(sensors, SEED_SENSORS[1]);
         self.felt.tolerance = TOLERANCE[0];
-        let variance = |own: &Vec<usize>| Cluster::of_rank(&self.felt, own.clone(), MAX_RANK).variance();
+        let variance = |own: &Vec<usize>| Cluster::widest(&self.felt, own.clone()).variance();
         let variances: Vec<f64> = seeds.par_iter().map(variance).collect();
         self.felt.tolerance = median(variances).clamp(TOLERANCE[0], TOLERANCE[1]);
         let found: Vec<Cluster> = seeds.into_par_iter().map(|own| Cluster::new(&self.felt, own)).collect();
@@ -109,7 +110,7 @@ impl Search {
 
     /// Merges the pair of clusters that saves most, again and again, as long as one motion explains the union, and both have
     /// components in common.
-    fn merged(&mut self, clusters: Vec<Cluster>) -> Vec<Cluster> {
+    pub(super) fn merged(&mut self, clusters: Vec<Cluster>) -> Vec<Cluster> {
         let mut name = clusters.len();
         let mut clusters: BTreeMap<usize, Cluster> = clusters.into_iter().enumerate().collect();
         // Those that are not one part are `None`.
@@ -146,7 +147,7 @@ impl Search {
     /// Whether two clusters have components in common, and one motion explains both.
     fn is_one(&self, a: &Cluster, b: &Cluster, union: &mut Cluster) -> bool {
         let tolerance = self.felt.tolerance;
-        if union.present(tolerance) >= a.present(tolerance) + b.present(tolerance) {
+        if !Cluster::have_common(a, b, union, tolerance) {
             return false;
         }
         let is_explained =
@@ -184,7 +185,7 @@ impl Search {
     }
 
     /// Assigns each of these sensors to the cluster that leaves it the smallest residual, if that explains it.
-    fn assigned(&mut self, mut clusters: Vec<Cluster>, sensors: &[usize]) -> Vec<Cluster> {
+    pub(super) fn assigned(&mut self, mut clusters: Vec<Cluster>, sensors: &[usize]) -> Vec<Cluster> {
         let tolerance = self.felt.tolerance;
         for _ in 0..MAX_ASSIGNMENTS {
             let residuals: Vec<Vec<f64>> = clusters.par_iter().map(|own| own.residuals(&self.felt)).collect();

@@ -1,0 +1,62 @@
+//! Part samples into those at which some sensors move less, and those at which they move more.
+
+use faer::Mat;
+
+use super::cluster::{Cluster, Felt};
+use super::medians::median;
+use super::roots::{Roots, columns};
+
+/// The variance that one motion of these sensors leaves in the slower half of the samples, as a share of that in the faster half.
+///
+/// A pressure over a time step has terms of second order in the turn of its part. No motion of rank six explains them, and they vanish
+/// in slow samples: the share is about a tenth. What two parts move against each other, and noise, do not.
+pub(super) fn slow_share(felt: &Felt, sensors: &[usize]) -> f64 {
+    let [slow, fast] = halves(felt, sensors).map(|half| {
+        let all = (0..half.roots.sensors()).collect();
+        Cluster::converged(&half, all).variance()
+    });
+    slow / fast.max(f64::MIN_POSITIVE)
+}
+
+/// What these sensors felt at the samples at which the sum of their squares, in true size, is below the median, and at the others.
+fn halves(felt: &Felt, sensors: &[usize]) -> [Felt; 2] {
+    let own = columns(&felt.roots.values, sensors);
+    let speed = |t: usize| {
+        let known = (0..own.ncols()).map(|sensor| own[(t, sensor)]).filter(|root| !root.is_nan());
+        felt.sizes[t] * known.map(|root| root * root).sum::<f64>().sqrt()
+    };
+    let speeds: Vec<f64> = (0..own.nrows()).map(speed).collect();
+    let middle = median(speeds.clone());
+    let completed = columns(&felt.completed, sensors);
+    [false, true].map(|is_fast| {
+        let samples: Vec<usize> = (0..speeds.len()).filter(|&t| (speeds[t] >= middle) == is_fast).collect();
+        let at = |values: &Mat<f64>| {
+            Mat::from_fn(samples.len(), values.ncols(), |t, sensor| values[(samples[t], sensor)])
+        };
+        let of = |numbers: &[f64]| samples.iter().map(|&t| numbers[t]).collect();
+        let roots =
+            Roots { values: at(&own), thresholds: of(&felt.roots.thresholds), signed: felt.roots.signed };
+        Felt { roots, completed: at(&completed), sizes: of(&felt.sizes), ..*felt }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn samples_are_parted_by_speed() {
+        // Speeds of the second and third sensor: 2, 12, 1, 3. The first is not asked for.
+        let values = Mat::from_fn(4, 3, |t, sensor| if sensor == 0 { 9.0 } else { [2.0, 4.0, 1.0, 3.0][t] });
+        let roots = Roots { values, thresholds: vec![0.1, 0.2, 0.3, 0.4], signed: false };
+        let completed = Mat::from_fn(4, 3, |t, sensor| (10 * t + sensor) as f64);
+        let felt =
+            Felt { roots, completed, sizes: vec![1.0, 3.0, 1.0, 1.0], tolerance: 1e-3, iterations: [1, 2] };
+        let [slow, fast] = halves(&felt, &[1, 2]);
+        assert_eq!(slow.roots.values, Mat::from_fn(2, 2, |t, _| [2.0, 1.0][t]));
+        assert_eq!(slow.roots.thresholds, [0.1, 0.3]);
+        assert_eq!(slow.completed, Mat::from_fn(2, 2, |t, sensor| (20 * t + sensor + 1) as f64));
+        assert_eq!((slow.sizes, slow.tolerance), (vec![1.0; 2], 1e-3));
+        assert_eq!(fast.roots.values, Mat::from_fn(2, 2, |t, _| [4.0, 3.0][t]));
+    }
+}
