@@ -115,11 +115,11 @@ fn k_subspaces(felt: &Felt, affinities: &Mat<f64>, k: usize) -> Vec<Cluster> {
 /// For each cluster, the sensors that it leaves the smallest residual of all, no more than `most`.
 fn nearest(felt: &Felt, clusters: &[Cluster], most: f64) -> Vec<Vec<usize>> {
     let residuals: Vec<Vec<f64>> = clusters.iter().map(|own| own.residuals(felt)).collect();
+    let of = |cluster: usize, sensor: usize| residuals[cluster][sensor];
     let mut members: Vec<Vec<usize>> = vec![Vec::new(); clusters.len()];
     for sensor in 0..felt.roots.sensors() {
-        let of = |at: &usize| residuals[*at][sensor];
-        let best = (0..clusters.len()).min_by(|a, b| of(a).total_cmp(&of(b)));
-        if let Some(best) = best.filter(|best| of(best) <= most) {
+        let best = (0..clusters.len()).min_by(|&a, &b| of(a, sensor).total_cmp(&of(b, sensor)));
+        if let Some(best) = best.filter(|&best| of(best, sensor) <= most) {
             members[best].push(sensor);
         }
     }
