@@ -7,7 +7,6 @@ use super::super::jumps::longest_stretch;
 use super::super::skeleton::{Channel, RecordedJoint};
 use super::*;
 use crate::stages::agent::{Freedom, Part, Shape, Site, across};
-use crate::stages::sense::{Sense, sense};
 use Channel::{Position, Rotation};
 
 const FRAME: f64 = 0.01; // s
@@ -79,15 +78,26 @@ fn error(interval: f64, mutant: bool) -> f64 {
     let trajectory =
         play(&agent, &attached, &movement, &frames, interval, samples(&movement, &frames, interval));
     assert_eq!(trajectory.samples(), (4.0 / interval + 1e-6) as usize);
-    let felt = sense(&agent, &trajectory, &Sense { interval, fluid_density: 1.0, threshold: 0.0 });
+    let Instants { before, moment } = trajectory.instants.as_ref().unwrap();
     let mut worst = 0.0_f64;
-    for (site, series) in agent.sites.iter().zip(felt.series()) {
-        for (sample, pressure) in series.iter().enumerate() {
+    for site in &agent.sites {
+        let own = |poses: &[Pose]| -> Vec<Pose> {
+            poses[site.part..].iter().step_by(agent.parts.len()).copied().collect()
+        };
+        for (sample, (before, now)) in own(before).iter().zip(&own(&trajectory.poses)[1..]).enumerate() {
             let time = (sample + if mutant { 2 } else { 1 }) as f64 * interval;
-            worst = worst.max((f64::from(*pressure).sqrt() - outward(&agent, site, time).max(0.0)).abs());
+            let felt = difference(before, now, site, *moment).max(0.0);
+            worst = worst.max((felt - outward(&agent, site, time).max(0.0)).abs());
         }
     }
     worst
+}
+
+/// The outward speed of a sensor by a backward difference, as equation 27 has it, m/s.
+fn difference(before: &Pose, now: &Pose, site: &Site, time: f64) -> f64 {
+    let (from, to) = (before.place(site.position), now.place(site.position));
+    let normal = now.rotation.map(|row| (0..3).map(|i| row[i] * site.normal[i]).sum::<f64>());
+    (0..3).map(|k| (to[k] - from[k]) / time * normal[k]).sum()
 }
 
 #[test]
