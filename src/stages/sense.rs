@@ -4,7 +4,7 @@
 //!
 //! The paper's fluid has no viscosity: a sensor feels ρ (ṗ · n)² where it moves outward, along its normal
 //! n, and nothing otherwise. The velocity ṗ is the backward difference of its position over Δt, the
-//! normal is that of the later sample. A movement that has [`Instants`](crate::stages::simulate::Instants) is felt at each sample instead:
+//! normal is that of the later sample. A movement that has [`Instants`] is felt at each sample instead:
 //! the difference is over a moment.
 
 use rayon::prelude::*;
