@@ -15,7 +15,7 @@ use super::floor::{floors, telling_samples, typical_floor};
 use super::medians::typical_size;
 use super::roots::{Roots, is_signed};
 use super::search::Search;
-use super::separation::BETTER;
+use super::separation::explaining;
 use super::subspace::{Loadings, MotionSubspace, ROTATION_RANK};
 use crate::numerics::partition::named_by_appearance;
 use crate::stages::sense::Tactile;
@@ -120,15 +120,6 @@ fn parts_of(clusters: Vec<Cluster>) -> Vec<Cluster> {
         own.freedom >= MIN_FREEDOM && (own.rank() >= ROTATION_RANK || own.sensors.len() >= small)
     };
     clusters.into_iter().filter(is_part).collect()
-}
-
-/// The part whose motion explains a sensor best, if it leaves no more than this, or much less than that of any other does.
-fn explaining(residuals: &[Vec<f64>], sensor: usize, most: f64) -> Option<usize> {
-    let mut order: Vec<(f64, usize)> =
-        residuals.iter().enumerate().map(|(at, own)| (own[sensor], at)).collect();
-    order.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let next = order.get(1).map_or(f64::INFINITY, |next| next.0);
-    order.first().filter(|best| best.0 <= f64::max(most, BETTER * next)).map(|best| best.1)
 }
 
 /// The motion of a part at all samples, from what was learned at some.

@@ -5,7 +5,7 @@ use kodama::Method;
 
 use super::cluster::{Cluster, Felt, MIN_FREEDOM};
 use super::completion::Completion;
-use super::search::{EXPLAINED, MIN_CLUSTER, MIN_SAVING, MIN_SENSORS};
+use super::search::{EXPLAINED, MIN_CLUSTER, MIN_SAVING, MIN_SENSORS, smallest};
 use crate::numerics::linkage;
 
 /// How many times less variance a piece must leave than one motion of all sensors does. Pieces of a rigid part with noise, or with a
@@ -115,11 +115,10 @@ fn k_subspaces(felt: &Felt, affinities: &Mat<f64>, k: usize) -> Vec<Cluster> {
 /// For each cluster, the sensors that it leaves the smallest residual of all, no more than `most`.
 fn nearest(felt: &Felt, clusters: &[Cluster], most: f64) -> Vec<Vec<usize>> {
     let residuals: Vec<Vec<f64>> = clusters.iter().map(|own| own.residuals(felt)).collect();
-    let of = |cluster: usize, sensor: usize| residuals[cluster][sensor];
     let mut members: Vec<Vec<usize>> = vec![Vec::new(); clusters.len()];
     for sensor in 0..felt.roots.sensors() {
-        let best = (0..clusters.len()).min_by(|&a, &b| of(a, sensor).total_cmp(&of(b, sensor)));
-        if let Some(best) = best.filter(|&best| of(best, sensor) <= most) {
+        let best = smallest(residuals.iter().map(|own| own[sensor]));
+        if let Some((best, _)) = best.filter(|(_, least)| *least <= most) {
             members[best].push(sensor);
         }
     }

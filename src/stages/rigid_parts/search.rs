@@ -263,6 +263,6 @@ impl Search {
 }
 
 /// The first of the smallest numbers, and its place.
-fn smallest(values: impl Iterator<Item = f64>) -> Option<(usize, f64)> {
+pub(super) fn smallest(values: impl Iterator<Item = f64>) -> Option<(usize, f64)> {
     values.enumerate().reduce(|best, other| if other.1 < best.1 { other } else { best })
 }

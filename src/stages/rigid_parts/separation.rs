@@ -20,7 +20,7 @@ const TOLERANCE: f64 = 2e-5;
 /// Iterations in which a motion is learned, and in which it comes to its end.
 const ITERATIONS: [usize; 2] = [24, 100];
 /// Residual of a sensor by a part, as a share of that by any other, up to which it is on that part.
-pub(super) const BETTER: f64 = 0.2;
+const BETTER: f64 = 0.2;
 /// Variance in slow samples, as a share of that in fast ones, below which an error vanishes with the speed.
 const VANISHING: f64 = 0.25;
 /// Most rounds of separating, assigning, merging and growing, and of growing in each.
@@ -30,20 +30,26 @@ impl Search {
     /// The clusters as far as they are of one part, and the parts of the others; nothing if no cluster is explained to the end.
     pub(super) fn separated(&mut self, clusters: &[Cluster]) -> Option<Vec<Cluster>> {
         let coarse = (self.felt.tolerance, self.felt.iterations);
-        let nearly = EXPLAINED * self.felt.tolerance;
         (self.felt.tolerance, self.felt.iterations) = (TOLERANCE, ITERATIONS);
+        let found = self.separated_to_the_end(clusters, EXPLAINED * coarse.0);
+        if found.is_none() {
+            (self.felt.tolerance, self.felt.iterations) = coarse;
+        }
+        found
+    }
+
+    /// The same with the tolerance and the iterations of exact data. A cluster that leaves more than `nearly` is none.
+    fn separated_to_the_end(&mut self, clusters: &[Cluster], nearly: f64) -> Option<Vec<Cluster>> {
         let all: Vec<usize> = (0..self.felt.roots.sensors()).collect();
         let converged = |own: &Cluster| Cluster::converged(&self.felt, own.sensors.clone());
         let mut found: Vec<Cluster> = clusters.par_iter().map(converged).collect();
         if !self.are_several(&found) {
-            (self.felt.tolerance, self.felt.iterations) = coarse;
             return None;
         }
         let mut before = Vec::new();
         for round in 0..MAX_ROUNDS {
             found = self.apart(found);
             if round == 0 && !found.iter().any(|own| self.is_exact(own) && own.freedom >= MIN_FREEDOM) {
-                (self.felt.tolerance, self.felt.iterations) = coarse;
                 return None;
             }
             self.complete(&found);
@@ -129,15 +135,10 @@ impl Search {
     /// For each cluster, the sensors of none that fit it much better than any other, the best first.
     fn wanted(&self, clusters: &[Cluster]) -> Vec<Vec<usize>> {
         let residuals: Vec<Vec<f64>> = clusters.par_iter().map(|own| own.residuals(&self.felt)).collect();
-        let home: BTreeSet<usize> = clusters.iter().flat_map(|own| own.sensors.iter().copied()).collect();
         let mut wanted: Vec<Vec<(f64, usize)>> = vec![Vec::new(); clusters.len()];
-        for sensor in (0..self.felt.roots.sensors()).filter(|sensor| !home.contains(sensor)) {
-            let mut order: Vec<(f64, usize)> =
-                residuals.iter().enumerate().map(|(at, own)| (own[sensor], at)).collect();
-            order.sort_by(|a, b| a.0.total_cmp(&b.0));
-            let next = order.get(1).map_or(f64::INFINITY, |next| next.0);
-            if let Some((least, at)) = order.first().filter(|best| best.0 <= BETTER * next) {
-                wanted[*at].push((*least, sensor));
+        for sensor in self.in_none(clusters) {
+            if let Some(at) = explaining(&residuals, sensor, 0.0) {
+                wanted[at].push((residuals[at][sensor], sensor));
             }
         }
         let by_residual = |mut own: Vec<(f64, usize)>| {
@@ -165,9 +166,7 @@ impl Search {
     fn with_pieces_of_the_rest(&mut self, clusters: Vec<Cluster>) -> Vec<Cluster> {
         let (mut exact, other): (Vec<Cluster>, Vec<Cluster>) =
             clusters.into_iter().partition(|own| self.is_exact(own));
-        let home: BTreeSet<usize> = exact.iter().flat_map(|own| own.sensors.iter().copied()).collect();
-        let rest: Vec<usize> =
-            (0..self.felt.roots.sensors()).filter(|sensor| !home.contains(sensor)).collect();
+        let rest = self.in_none(&exact);
         if rest.len() < MIN_SENSORS {
             return exact.into_iter().chain(other).collect();
         }
@@ -176,6 +175,12 @@ impl Search {
         let taken: Vec<usize> = found.iter().flat_map(|own| own.sensors.iter().copied()).collect();
         exact.extend(found);
         exact.into_iter().chain(self.without(other, &taken)).collect()
+    }
+
+    /// The sensors that are in none of these clusters.
+    fn in_none(&self, clusters: &[Cluster]) -> Vec<usize> {
+        let home: BTreeSet<usize> = clusters.iter().flat_map(|own| own.sensors.iter().copied()).collect();
+        (0..self.felt.roots.sensors()).filter(|sensor| !home.contains(sensor)).collect()
     }
 
     /// Clusters without these sensors.
@@ -187,4 +192,13 @@ impl Search {
         };
         clusters.into_iter().filter_map(without).collect()
     }
+}
+
+/// The part whose motion explains a sensor best, if it leaves no more than this, or much less than that of any other does.
+pub(super) fn explaining(residuals: &[Vec<f64>], sensor: usize, most: f64) -> Option<usize> {
+    let mut order: Vec<(f64, usize)> =
+        residuals.iter().enumerate().map(|(at, own)| (own[sensor], at)).collect();
+    order.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let next = order.get(1).map_or(f64::INFINITY, |next| next.0);
+    order.first().filter(|best| best.0 <= f64::max(most, BETTER * next)).map(|best| best.1)
 }
