@@ -8,11 +8,9 @@ use std::fs;
 use sha2::{Digest, Sha256};
 use toml::Table;
 
-mod support;
-
-use support::repository::{entries, read, repository};
-use support::said::Said;
-use support::tools::python;
+use crate::support::repository::{entries, read, repository};
+use crate::support::said::Said;
+use crate::support::tools::python;
 
 /// Removes what lies between `open` and the next `close`, both included.
 fn without(text: &str, open: &str, close: &str) -> String {

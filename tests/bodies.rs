@@ -13,11 +13,9 @@ use bodyschema::stages::sense::sense;
 use bodyschema::stages::simulate::simulate;
 use rand_distr::{Distribution, StandardNormal};
 
-mod support;
-
-use support::folder::Folder;
-use support::repository::{entries, read, repository};
-use support::said::Said;
+use crate::support::folder::Folder;
+use crate::support::repository::{entries, read, repository};
+use crate::support::said::Said;
 
 fn bodies() -> Vec<(PathBuf, NamedBody)> {
     entries("bodies").into_iter().map(|path| (path.clone(), read_body(&path).unwrap())).collect()

@@ -6,11 +6,9 @@ use std::path::{Path, PathBuf};
 use bodyschema::files::body::{NamedBody, read_body};
 use bodyschema::stages::agent::{Freedom, Shape};
 
-mod support;
-
-use support::folder::Folder;
-use support::repository::repository;
-use support::said::Said;
+use crate::support::folder::Folder;
+use crate::support::repository::repository;
+use crate::support::said::Said;
 
 fn data(name: &str) -> PathBuf {
     repository("tests/data/import").join(name)

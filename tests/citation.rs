@@ -3,12 +3,10 @@
 
 use std::process::Command;
 
-mod support;
-
-use support::folder::{Folder, rows};
-use support::repository::{read, repository};
-use support::said::Said;
-use support::tools::{python, run};
+use crate::support::folder::{Folder, rows};
+use crate::support::repository::{read, repository};
+use crate::support::said::Said;
+use crate::support::tools::{python, run};
 
 fn citation() -> String {
     read("CITATION.cff")

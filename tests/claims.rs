@@ -5,12 +5,10 @@ use std::collections::BTreeSet;
 
 use toml::{Table, Value};
 
-mod support;
-
-use support::folder::Folder;
-use support::repository::{read, repository};
-use support::said::Said;
-use support::tools::python;
+use crate::support::folder::Folder;
+use crate::support::repository::{read, repository};
+use crate::support::said::Said;
+use crate::support::tools::python;
 
 /// Most words of a quotation.
 const WORDS: usize = 15;

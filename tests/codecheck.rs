@@ -7,12 +7,10 @@ use std::path::Path;
 
 use toml::{Table, Value};
 
-mod support;
-
-use support::folder::Folder;
-use support::repository::{read, repository};
-use support::said::Said;
-use support::tools::python;
+use crate::support::folder::Folder;
+use crate::support::repository::{read, repository};
+use crate::support::said::Said;
+use crate::support::tools::python;
 
 fn rules() -> Table {
     read("reproduce/codecheck.toml").parse().unwrap()

@@ -7,11 +7,9 @@ use bodyschema::stages::body_map::BodyMap;
 use bodyschema::stages::distance::Distances;
 use bodyschema::stages::sense::Tactile;
 
-mod support;
-
-use support::folder::Folder;
-use support::repository::repository;
-use support::small::{separated_clusters, small};
+use crate::support::folder::Folder;
+use crate::support::repository::repository;
+use crate::support::small::{separated_clusters, small};
 
 /// The small body for longer, so that its parts and tree are found.
 const LONGER: &str = "physics.duration = 1500.0\nexperiment.seed = 11\n";

@@ -5,9 +5,7 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
-mod support;
-
-use support::repository::{pages, read, repository};
+use crate::support::repository::{pages, read, repository};
 
 /// Numbered equations of the paper.
 const EQUATIONS: usize = 27;

@@ -5,10 +5,7 @@
 use petgraph::{algo::tarjan_scc, graphmap::DiGraphMap};
 use syn::{Item, ItemMod};
 
-#[path = "support/names.rs"]
-mod names;
-
-use names::{Sources, is_in, sources, with};
+use crate::support::names::{Sources, is_in, sources, with};
 
 /// The rooms from the ground up: each imports only those before it.
 const ROOMS: [&str; 13] = [

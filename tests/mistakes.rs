@@ -5,10 +5,8 @@ use bodyschema::stages::body_map::BodyMap;
 use bodyschema::stages::distance::Distances;
 use bodyschema::stages::sense::Tactile;
 
-mod support;
-
-use support::folder::Folder;
-use support::small::separated_clusters;
+use crate::support::folder::Folder;
+use crate::support::small::separated_clusters;
 
 #[test]
 fn a_mistake_is_one_line_that_says_what_and_where_and_status_2() {

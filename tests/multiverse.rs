@@ -6,9 +6,7 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
-mod support;
-
-use support::folder::{files, rows};
+use crate::support::folder::{files, rows};
 
 /// Bodies of few sensors, for seconds. One of the two controllers is unstable.
 const DESIGN: &str = r#"

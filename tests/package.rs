@@ -8,10 +8,8 @@ use std::process::Command;
 
 use serde_json::Value;
 
-mod support;
-
-use support::repository::{read, repository};
-use support::said::Said;
+use crate::support::repository::{read, repository};
+use crate::support::said::Said;
 
 /// Largest package, in bytes before it is compressed.
 const BYTES: u64 = 2_000_000;

@@ -5,9 +5,7 @@ use std::fs;
 use pulldown_cmark::{Event, Options, Parser, Tag, TagEnd};
 use unicode_segmentation::UnicodeSegmentation;
 
-mod support;
-
-use support::repository::{pages, read};
+use crate::support::repository::{pages, read};
 
 /// Most words of a sentence, on average over a page.
 const AVERAGE: f64 = 25.0;

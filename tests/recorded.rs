@@ -4,10 +4,8 @@ use bodyschema::files::body::read_body;
 use bodyschema::files::npy::read_tactile;
 use bodyschema::files::tables::read_truth;
 
-mod support;
-
-use support::folder::Folder;
-use support::repository::read;
+use crate::support::folder::Folder;
+use crate::support::repository::read;
 
 /// A recording of our own: 2 s of hips, trunk, an arm of one piece with a watch and a finger, and legs of which one is rigid.
 fn text() -> String {

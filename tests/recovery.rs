@@ -1,15 +1,14 @@
 //! Trees of bodies drawn from the model itself: found where that is easy, by chance where it is impossible.
 //! The whole picture, over separation and dimensions, is `reproduce/evidence.sh`'s.
 
-#[path = "support/synthetic.rs"]
-mod synthetic;
-
 use bodyschema::numerics::rng::stream;
 use bodyschema::settings::Settings;
 use bodyschema::stages::evaluate::{parts, score};
 use bodyschema::stages::schema::{EdgeWeight, Schema};
 use bodyschema::stages::schema::{Model, infer};
 use bodyschema::stages::tree::Truth;
+
+use crate::support::synthetic;
 
 /// The sampler of the paper's equations.
 fn equations() -> Schema {

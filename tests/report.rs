@@ -5,11 +5,9 @@ use std::path::Path;
 
 use serde::Deserialize;
 
-mod support;
-
-use support::browser::{inaccessible, quoted, seen};
-use support::folder::Folder;
-use support::small::small;
+use crate::support::browser::{inaccessible, quoted, seen};
+use crate::support::folder::Folder;
+use crate::support::small::small;
 
 /// Opens the report in a frame of each width and says what it sees, as JSON in the element `seen`.
 const HARNESS: &str = r#"<!doctype html><meta charset="utf-8"><body><pre id="seen"></pre><script>

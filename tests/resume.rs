@@ -9,11 +9,9 @@ use std::time::Duration;
 use bodyschema::numerics::rng::stream;
 use rand::RngExt;
 
-mod support;
-
-use support::folder::Folder;
-use support::said::Said;
-use support::small::small;
+use crate::support::folder::Folder;
+use crate::support::said::Said;
+use crate::support::small::small;
 
 /// Both experiments in a second or two, in more parts.
 const PARTS: &str = "
@@ -61,7 +59,7 @@ fn ended(child: &mut Child, within: Duration) -> Option<ExitStatus> {
 fn a_run_killed_at_any_moment_ends_with_the_same_files() {
     let folder = folder_with_settings();
     let mut rng = stream(1, 1, "kills", 0);
-    // `BODYSCHEMA_ROUNDS=40 cargo test --test resume -- --nocapture` kills for some minutes.
+    // `BODYSCHEMA_ROUNDS=40 cargo test --test suite resume -- --nocapture` kills for some minutes.
     let rounds: usize = std::env::var("BODYSCHEMA_ROUNDS").map_or(2, |rounds| rounds.parse().unwrap());
     let mut all_kills = 0;
     for experiment in ["exp1", "exp2"] {

@@ -11,13 +11,11 @@ use std::time::{SystemTime, UNIX_EPOCH};
 
 use serde_json::{Value, json};
 
-mod support;
-
-use support::folder::Folder;
-use support::repository::repository;
-use support::said::Said;
-use support::small::small;
-use support::tools::skipped;
+use crate::support::folder::Folder;
+use crate::support::repository::repository;
+use crate::support::said::Said;
+use crate::support::small::small;
+use crate::support::tools::skipped;
 
 /// A study in a second or two.
 fn design() -> String {

@@ -19,8 +19,7 @@ use rand::RngExt;
 use rand::seq::IndexedRandom;
 use rayon::prelude::*;
 
-#[path = "support/bounded.rs"]
-mod bounded;
+use crate::support::bounded;
 
 /// The values that a setting may have, as long as all others are the paper's.
 enum Range {

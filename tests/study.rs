@@ -5,9 +5,7 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
-mod support;
-
-use support::folder::{files, rows};
+use crate::support::folder::{files, rows};
 
 /// Bodies of few sensors, for a second or two, and what else the designs below rest on.
 const SMALL: &str = "

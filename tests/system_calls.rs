@@ -4,12 +4,10 @@
 use std::path::Path;
 use std::process::Command;
 
-mod support;
-
-use support::folder::Folder;
-use support::said::Said;
-use support::small::small;
-use support::tools::skipped;
+use crate::support::folder::Folder;
+use crate::support::said::Said;
+use crate::support::small::small;
+use crate::support::tools::skipped;
 
 /// Less still, for strace is slow.
 const TINY: &str = "

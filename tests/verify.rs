@@ -4,12 +4,10 @@ use std::fs;
 
 use bodyschema::files::{npy, sha256};
 
-mod support;
-
-use support::folder::Folder;
-use support::repository::repository;
-use support::said::Said;
-use support::small::small;
+use crate::support::folder::Folder;
+use crate::support::repository::repository;
+use crate::support::said::Said;
+use crate::support::small::small;
 
 /// All that is printed, with this exit status.
 #[track_caller]

@@ -7,10 +7,8 @@ use std::path::Path;
 use serde::Deserialize;
 use serde_json::Value;
 
-mod support;
-
-use support::browser::{inaccessible, quoted, seen};
-use support::folder::Folder;
+use crate::support::browser::{inaccessible, quoted, seen};
+use crate::support::folder::Folder;
 
 /// The paper's body of 840 sensors for a minute, in which joints move eleven times out of twelve.
 const MINUTE: &str = "physics.duration = 60.0\nmotion.coordination = 0.5";

@@ -1,6 +1,5 @@
 //! The source files of the crate, and what each names: the paths in its code, in what its macros are given, and at the
 //! leaves of its `use` trees.
-#![allow(unreachable_pub, reason = "a part of the kit")]
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
