@@ -21,7 +21,7 @@ use crate::numerics::rng::stream;
 use crate::recording::Recording;
 use crate::report::estimated::page;
 use crate::settings::Base;
-use crate::stages::evaluate::{joins, score};
+use crate::stages::evaluate::{joints_right, score};
 use crate::stages::rigid_parts::MIN_SENSORS;
 use crate::stages::tree::Truth;
 use crate::stages::usable::Fault;
@@ -104,7 +104,7 @@ impl AgainstTruth {
         Self {
             parts: truth.parts(),
             adjusted_rand_index: score.ari,
-            joints_right: tree.iter().filter(|edge| joins(labels, edge, truth)).count(),
+            joints_right: joints_right(labels, tree, truth),
             tree_right: score.tree_correct,
         }
     }

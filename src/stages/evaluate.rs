@@ -3,12 +3,12 @@
 //! In: the part of each sensor and a tree over the parts, such as those of a posterior sample, and the [`Truth`]. Out: a
 //! [`Score`]: the adjusted Rand index, whether the tree is eligible, and whether it is right.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use serde::{Deserialize, Serialize};
 
 pub use crate::numerics::partition::adjusted_rand_index;
-use crate::numerics::partition::{is_tree, sizes};
+use crate::numerics::partition::{Connected, is_tree, sizes};
 use crate::numerics::range::{Checked, check};
 use crate::stages::tree::{Edge, Truth};
 
@@ -101,6 +101,17 @@ pub fn joins(labels: &[usize], edge: &Edge, truth: &Truth) -> bool {
     parts.get(&edge.child).zip(parts.get(&edge.parent)).is_some_and(|(&a, &b)| truth.meet(a, b))
 }
 
+/// How many joints of the true tree an estimated tree has: edges that [join](joins) what is joined, without those that join again what
+/// others do, as edges to two clusters of one part would.
+pub fn joints_right(labels: &[usize], tree: &[Edge], truth: &Truth) -> usize {
+    let parts = majority(labels, truth);
+    let nodes: BTreeMap<usize, usize> =
+        parts.values().copied().collect::<BTreeSet<_>>().into_iter().zip(0..).collect();
+    let mut connected = Connected::new(nodes.len());
+    let right = tree.iter().filter(|edge| joins(labels, edge, truth));
+    right.filter(|edge| connected.connect(nodes[&parts[&edge.child]], nodes[&parts[&edge.parent]])).count()
+}
+
 /// Whether the estimated tree is the true one: every active cluster is matched to the part that most of
 /// its sensors are on, every part is matched once, and matched edges are the true edges, or others that connect parts which turn
 /// about the same place.
@@ -151,6 +162,8 @@ mod tests {
         let four = [[0; 4], [1; 4], [2, 2, 3, 3]].concat();
         let score_four = scored(&four, &[(1, 0), (2, 1), (3, 2)], 0.0);
         assert!(!score_four.eligible && !score_four.tree_correct);
+        let edges = [(1, 0), (2, 1), (3, 1)].map(|(child, parent)| Edge { child, parent });
+        assert_eq!(joints_right(&four, &edges, &chain_of_three()), 2, "two of the three are one joint");
         let doubled = [[0, 0, 1, 1], [2; 4], [2; 4]].concat();
         let score_doubled = scored(&doubled, &[(1, 0), (2, 1)], 0.0);
         assert!(score_doubled.eligible && !score_doubled.tree_correct);

@@ -20,8 +20,9 @@ use crate::numerics::eigen::largest;
 const MAX_SENSORS: usize = 48;
 /// Iterations in which the motion of a cluster is learned, and more where it is in doubt whether one motion explains it.
 pub(super) const ITERATIONS: [usize; 2] = [8, 24];
-/// Iterations in which c of other sensors is found from given w.
-const LOADING_ITERATIONS: usize = 2;
+/// Iterations in which c of other sensors is found from given w: where completed roots start it, and from nothing. A sensor that feels
+/// something at few samples takes the most.
+const LOADING_ITERATIONS: [usize; 2] = [2, 30];
 /// Weight of a completed root, in both: so small that it decides only where informative roots do not.
 const WEIGHTS: [f64; 2] = [3e-3, 3e-4];
 /// Momentum of these iterations: the least and the largest, and its factors while the residual falls and when it grew.
@@ -29,6 +30,8 @@ const MOMENTUM: [f64; 2] = [0.5, 0.98];
 const PACE: [f64; 2] = [1.1, 0.5];
 /// The least tolerance: what the iterations leave.
 pub(super) const LEAST_TOLERANCE: f64 = 3e-4;
+/// Residual variance at which more iterations say nothing new: somewhat more than rounding to single precision leaves.
+pub(super) const ROUNDING: f64 = 1e-11;
 /// Degrees of freedom of its residual that a part must have per sample. With fewer, any sensors fit.
 pub(super) const MIN_FREEDOM: f64 = 1.0;
 /// Leverage above which a sensor spans a component alone: all others together tell less than a tenth of it.
@@ -197,6 +200,15 @@ impl Cluster {
         }
     }
 
+    /// Residual variance of the informative roots of one of the representatives, 0 for another sensor.
+    pub(super) fn residual_of(&self, felt: &Felt, sensor: usize) -> f64 {
+        let Ok(at) = self.representatives.binary_search(&sensor) else { return 0.0 };
+        let own = felt.roots.select_as_they_are(&[sensor]);
+        let loadings = self.loadings.as_ref().subrows(at, 1);
+        let residuals = Als::new(own.values.as_ref(), &own.thresholds).residuals(loadings, &self.motion);
+        residuals.into_iter().map(per_root).sum()
+    }
+
     /// Residual variance of the informative roots of each sensor by this motion.
     pub(super) fn residuals(&self, felt: &Felt) -> Vec<f64> {
         let squares = product(self.motion.transpose(), self.motion.as_ref());
@@ -205,14 +217,10 @@ impl Cluster {
         let als = Als::new(felt.roots.values.as_ref(), &felt.roots.thresholds);
         let with_completed = Als::new(felt.roots.values.as_ref(), &felt.roots.thresholds)
             .with_completed(felt.completed.as_ref(), WEIGHTS[0]);
-        for _ in 0..LOADING_ITERATIONS {
+        for _ in 0..LOADING_ITERATIONS[0] {
             with_completed.update_loadings(loadings.as_mut(), &self.motion);
         }
-        // One more, so that there is a variance of none.
-        als.residuals(loadings.as_ref(), &self.motion)
-            .into_iter()
-            .map(|[sum, count]| sum / (count + 1.0))
-            .collect()
+        als.residuals(loadings.as_ref(), &self.motion).into_iter().map(per_root).collect()
     }
 
     /// The residual of each of any sensors at the same samples: the share of its sum of squares that this motion leaves unexplained, 1 if
@@ -220,7 +228,7 @@ impl Cluster {
     pub(super) fn shares(&self, roots: &Roots) -> Vec<f64> {
         let als = Als::new(roots.values.as_ref(), &roots.thresholds);
         let mut loadings = Mat::zeros(roots.sensors(), self.rank());
-        for _ in 0..2 * LOADING_ITERATIONS {
+        for _ in 0..LOADING_ITERATIONS[1] {
             als.update_loadings(loadings.as_mut(), &self.motion);
         }
         let residuals = als.residuals(loadings.as_ref(), &self.motion);
@@ -247,7 +255,11 @@ impl Cluster {
             let als = Als::new(values, thresholds).with_completed(completed.as_ref(), weight);
             let mut next = loadings.clone();
             als.update_loadings(next.as_mut(), motion);
-            let [residual, _] = plain.residual(next.as_ref(), motion);
+            let [residual, freedom] = plain.residual(next.as_ref(), motion);
+            if felt.tolerance < LEAST_TOLERANCE && residual <= ROUNDING * freedom {
+                *loadings = next;
+                break;
+            }
             let mut step = 0.0;
             if residual > before {
                 momentum = f64::max(MOMENTUM[0], momentum * PACE[1]);
@@ -280,6 +292,11 @@ impl Cluster {
         let loadings = sensors * self.rank() as f64 * samples.ln() / samples;
         0.5 * (motion + ratio * self.freedom * residual + loadings)
     }
+}
+
+/// The residual variance of a sum of squares of so many roots; of one more, so that there is a variance of none.
+fn per_root([sum, count]: [f64; 2]) -> f64 {
+    sum / (count + 1.0)
 }
 
 /// Replaces what completes roots by the velocity that is predicted, which is no more than the root; any, where this is missing.

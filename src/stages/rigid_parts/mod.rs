@@ -18,6 +18,7 @@ mod factorisation;
 #[cfg(test)]
 pub(crate) mod fixtures;
 mod floor;
+mod growth;
 mod halves;
 mod log_determinant;
 mod medians;

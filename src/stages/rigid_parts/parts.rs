@@ -11,15 +11,18 @@ use rayon::prelude::*;
 use super::cluster::{Cluster, Felt, ITERATIONS, MIN_FREEDOM};
 use super::completion::Completion;
 use super::faces::similar;
+use super::factorisation::MAX_RANK;
 use super::floor::{floors, telling_samples, typical_floor};
 use super::medians::typical_size;
 use super::roots::{Roots, is_signed};
-use super::search::Search;
+use super::search::{MIN_SENSORS, Search};
 use super::separation::explaining;
 use super::subspace::{Loadings, MotionSubspace, ROTATION_RANK};
 use crate::numerics::partition::named_by_appearance;
 use crate::stages::sense::Tactile;
 
+/// Samples at which a sensor must feel something to be searched for: four for each of the six numbers that its part says of it.
+const MIN_FELT: usize = 4 * MAX_RANK;
 /// Samples that parts are searched on, spread over all at which anything is felt.
 const MAX_SAMPLES: usize = 1500;
 
@@ -54,7 +57,7 @@ pub struct RigidParts {
 pub fn rigid_parts(tactile: &Tactile, sensors: &[usize]) -> RigidParts {
     let signed = is_signed(tactile);
     let all: Vec<&[f32]> = tactile.series().collect();
-    let some: Vec<&[f32]> = sensors.iter().map(|&sensor| all[sensor]).collect();
+    let mut some: Vec<&[f32]> = sensors.iter().map(|&sensor| all[sensor]).collect();
     let floors = floors(&all);
     let samples = telling_samples(
         &some,
@@ -67,6 +70,11 @@ pub fn rigid_parts(tactile: &Tactile, sensors: &[usize]) -> RigidParts {
     let every = every.scaled(&scales);
     let sizes = every.select(sensors).sizes();
     let every = every.equalised(&sizes, floor);
+    // Others are on the part that explains them best: they tell next to nothing, and span motions of their own.
+    let is_felt: Vec<bool> = (0..all.len()).map(|sensor| every.felt(sensor) >= MIN_FELT).collect();
+    let telling: Vec<usize> = sensors.iter().copied().filter(|&sensor| is_felt[sensor]).collect();
+    let sensors = if telling.len() >= MIN_SENSORS { &telling } else { sensors };
+    some = sensors.iter().map(|&sensor| all[sensor]).collect();
     let roots = every.select_as_they_are(sensors);
     let completion = Completion::new(&roots);
     let felt =
@@ -82,7 +90,8 @@ pub fn rigid_parts(tactile: &Tactile, sensors: &[usize]) -> RigidParts {
     }
     let residuals: Vec<Vec<f64>> = parts.par_iter().map(|part| part.shares(&every)).collect();
     for (sensor, label) in labels.iter_mut().enumerate() {
-        *label = label.or_else(|| explaining(&residuals, sensor, search.most_residual()));
+        let most = if is_felt[sensor] { search.most_residual() } else { f64::INFINITY };
+        *label = label.or_else(|| explaining(&residuals, sensor, most));
     }
     let rest: Vec<usize> = (0..all.len()).filter(|&sensor| labels[sensor].is_none()).collect();
     let groups = similar(&every, &rest);

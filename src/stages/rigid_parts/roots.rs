@@ -137,6 +137,12 @@ impl Roots {
         Self { values, thresholds: self.thresholds.clone(), signed: self.signed }
     }
 
+    /// At how many samples a sensor feels something.
+    pub(super) fn felt(&self, sensor: usize) -> usize {
+        let both = self.values.col_as_slice(sensor).iter().zip(&self.thresholds);
+        both.filter(|(root, least)| root >= least).count()
+    }
+
     /// Whether a value is missing.
     fn has_gaps(&self) -> bool {
         (0..self.sensors()).any(|sensor| self.values.col_as_slice(sensor).iter().any(|root| root.is_nan()))

@@ -41,7 +41,7 @@ const MAX_ALTERNATIONS: usize = 4;
 pub(super) struct Search {
     pub(super) felt: Felt,
     /// Affinities between sensors, sensors × sensors, 0 to 1.
-    affinities: Mat<f64>,
+    pub(super) affinities: Mat<f64>,
 }
 
 impl Search {

@@ -115,3 +115,23 @@ fn a_large_face_joins_the_part_that_it_shares_components_with() {
     assert_eq!(found.labels, (0..120).map(|sensor| sensor / 80).collect::<Vec<usize>>());
     assert!(found.unassigned.is_empty());
 }
+
+#[test]
+fn a_sensor_that_feels_something_at_few_samples_makes_no_part() {
+    let (Tactile { samples, pressures }, truth) = tactile();
+    let mut rng = stream(7, 1, "few", 0);
+    // Of the first part, but heard at three samples only.
+    let few: Vec<f32> = (0..8)
+        .flat_map(|_| {
+            let mut series = vec![0.0; samples];
+            let first = rng.random_range(0..samples - 3);
+            series[first..first + 3].copy_from_slice(&pressures[first..first + 3]);
+            series[first] += 1.0;
+            series
+        })
+        .collect();
+    let tactile = Tactile { samples, pressures: [pressures, few].concat() };
+    let found = rigid_parts(&tactile, &(0..tactile.sensors()).collect::<Vec<_>>());
+    assert_eq!(found.labels[..truth.len()], truth);
+    assert_eq!((found.motions.len(), &found.unassigned[..]), (5, &[][..]));
+}

@@ -1,0 +1,196 @@
+//! Let exact clusters grow by sensors that they explain once they are in.
+//!
+//! The end of a cylinder alone feels the motion along its axis, which is no motion of the cluster before it is in.
+
+use rayon::prelude::*;
+
+use super::cluster::{Cluster, ROUNDING};
+use super::search::{EXPLAINED, Search};
+use super::separation::{LEVELS, MAX_ROUNDS, explaining};
+use super::stratified::stratified;
+
+/// How many times more a cluster may leave with more sensors than without. A sensor of another part adds more.
+const MORE: f64 = 1000.0;
+/// Sensors that a cluster may grow by at once, and those of the cluster that are learned with them.
+const MAX_GROUP: usize = 24;
+/// Fewest sensors that a cluster grows by if it did not explain them before. Any cluster of less than six motions explains one.
+const MIN_GROUP: usize = 2;
+
+impl Search {
+    /// Exact clusters with the sensors of no exact one that they explain: one by one, and those that are explained together.
+    pub(super) fn grown(&mut self, clusters: Vec<Cluster>) -> Vec<Cluster> {
+        let one_by_one = |own: &Self, exact: &[Cluster]| -> Vec<Option<Cluster>> {
+            let wanted = own.wanted(exact);
+            exact.par_iter().zip(&wanted).map(|(cluster, wanted)| own.with_as_many(cluster, wanted)).collect()
+        };
+        let together = |own: &Self, exact: &[Cluster]| -> Vec<Option<Cluster>> {
+            let rest = own.in_none(exact);
+            exact.par_iter().map(|cluster| own.with_group(cluster, &rest)).collect()
+        };
+        let clusters = self.grown_by(clusters, one_by_one);
+        self.grown_by(clusters, together)
+    }
+
+    /// Exact clusters, each replaced by a larger one as long as there are any. What two want goes to that which explains it best.
+    fn grown_by(
+        &mut self,
+        mut clusters: Vec<Cluster>,
+        larger: impl Fn(&Self, &[Cluster]) -> Vec<Option<Cluster>>,
+    ) -> Vec<Cluster> {
+        for _ in 0..MAX_ROUNDS {
+            let (mut exact, other): (Vec<Cluster>, Vec<Cluster>) =
+                clusters.into_iter().partition(|own| self.is_exact(own));
+            let found = larger(self, &exact);
+            let mut found: Vec<(usize, Cluster)> =
+                found.into_iter().enumerate().filter_map(|(at, own)| Some((at, own?))).collect();
+            found.sort_by(|(_, a), (_, b)| a.variance().total_cmp(&b.variance()));
+            let has_grown = !found.is_empty();
+            let mut taken: Vec<usize> = Vec::new();
+            for (at, own) in found {
+                let is_new = |sensor: &&usize| exact[at].sensors.binary_search(sensor).is_err();
+                let new: Vec<usize> = own.sensors.iter().filter(is_new).copied().collect();
+                if !new.iter().any(|sensor| taken.contains(sensor)) {
+                    taken.extend(new);
+                    own.complete(&mut self.felt);
+                    exact[at] = own;
+                }
+            }
+            clusters = exact.into_iter().chain(self.without(other, &taken)).collect();
+            if !has_grown {
+                break;
+            }
+        }
+        clusters
+    }
+
+    /// For each cluster, the sensors of none that fit it much better than any other, the best first.
+    fn wanted(&self, clusters: &[Cluster]) -> Vec<Vec<usize>> {
+        let residuals: Vec<Vec<f64>> = clusters.par_iter().map(|own| own.residuals(&self.felt)).collect();
+        let mut wanted: Vec<Vec<(f64, usize)>> = vec![Vec::new(); clusters.len()];
+        for sensor in self.in_none(clusters) {
+            if let Some(at) = explaining(&residuals, sensor, 0.0) {
+                wanted[at].push((residuals[at][sensor], sensor));
+            }
+        }
+        let by_residual = |mut own: Vec<(f64, usize)>| {
+            own.sort_by(|a, b| a.0.total_cmp(&b.0));
+            own.into_iter().map(|(_, sensor)| sensor).collect()
+        };
+        wanted.into_iter().map(by_residual).collect()
+    }
+
+    /// A cluster with the first of some sensors: all, or half of them, and so on, until it is exact and has components in common
+    /// with them.
+    fn with_as_many(&self, cluster: &Cluster, wanted: &[usize]) -> Option<Cluster> {
+        let counts = std::iter::successors(Some(wanted.len()), |count| Some(count / 2));
+        let with = |count: usize| {
+            let both =
+                Cluster::converged(&self.felt, [cluster.sensors.as_slice(), &wanted[..count]].concat());
+            (Self::are_told(count, cluster, &both) && self.is_exact(&both)).then_some(both)
+        };
+        counts.take_while(|count| *count > 0).find_map(with)
+    }
+
+    /// A cluster with those of some sensors that one motion explains together with it, of those of highest affinity. All are tried, then
+    /// without the third that fits worst, and so on.
+    fn with_group(&self, cluster: &Cluster, rest: &[usize]) -> Option<Cluster> {
+        let affinity =
+            |sensor: usize| cluster.sensors.iter().map(|&own| self.affinities[(own, sensor)]).sum::<f64>();
+        let mut order: Vec<(f64, usize)> = rest.iter().map(|&sensor| (affinity(sensor), sensor)).collect();
+        order.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let mut group: Vec<usize> = order.into_iter().take(MAX_GROUP).map(|(_, sensor)| sensor).collect();
+        let core: Vec<usize> =
+            stratified(cluster.sensors.len(), MAX_GROUP).map(|at| cluster.sensors[at]).collect();
+        let most = f64::min(EXPLAINED * self.felt.tolerance, MORE * cluster.variance().max(ROUNDING));
+        let with = |core: &[usize], group: &[usize]| Cluster::converged(&self.felt, [core, group].concat());
+        while group.len() >= MIN_GROUP {
+            let both = with(&core, &group);
+            let of = |sensor: usize| (both.residual_of(&self.felt, sensor), sensor);
+            let mut foreign: Vec<(f64, usize)> =
+                group.iter().map(|&sensor| of(sensor)).filter(|(residual, _)| *residual > most).collect();
+            if foreign.is_empty() {
+                let alone = both.alone();
+                foreign.extend(
+                    group.iter().filter(|sensor| alone.contains(sensor)).map(|&sensor| (0.0, sensor)),
+                );
+            }
+            if foreign.is_empty() {
+                let is_told = Self::are_told(group.len(), cluster, &both);
+                let all = (is_told && both.variance() <= most).then(|| with(&cluster.sensors, &group));
+                return all.filter(|own| own.variance() <= most);
+            }
+            foreign.sort_by(|a, b| b.0.total_cmp(&a.0));
+            foreign.truncate(foreign.len().div_ceil(3));
+            group.retain(|sensor| !foreign.iter().any(|(_, other)| other == sensor));
+        }
+        None
+    }
+
+    /// Whether it says something that a cluster explains so many more sensors. As many new components explain them whatever they feel.
+    fn are_told(more: usize, cluster: &Cluster, both: &Cluster) -> bool {
+        let present = |own: &Cluster| own.present(LEVELS[0].0);
+        more > present(both).saturating_sub(present(cluster))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use faer::Mat;
+    use rand::RngExt;
+
+    use super::super::cluster::Felt;
+    use super::super::completion::Completion;
+    use super::super::roots::{Roots, product};
+    use super::*;
+    use crate::numerics::rng::stream;
+
+    /// What 24 sensors on the side of a cylinder feel, four on one end, and four on the other; and six on another part, whose motion differs
+    /// by a tenth.
+    fn felt() -> Search {
+        let mut rng = stream(2, 1, "growth", 0);
+        let mut uniform = |rows, columns| Mat::from_fn(rows, columns, |_, _| rng.random_range(-1.0_f64..1.0));
+        let motion = uniform(600, 5);
+        let other = &motion + uniform(600, 5) * faer::Scale(0.1);
+        // The fifth component is along the axis: the side does not feel it, and the ends do with opposite signs.
+        let mut own = uniform(5, 32);
+        for sensor in 0..32 {
+            own[(4, sensor)] = match sensor {
+                0..24 => 0.0,
+                24..28 => 1.0,
+                _ => -1.0,
+            };
+        }
+        let velocities =
+            [product(motion.as_ref(), own.as_ref()), product(other.as_ref(), uniform(5, 6).as_ref())];
+        let values = Mat::from_fn(600, 38, |t, sensor| {
+            let (part, at) = if sensor < 32 { (0, sensor) } else { (1, sensor - 32) };
+            velocities[part][(t, at)].max(0.0)
+        });
+        let sizes = vec![1.0; 600];
+        let roots = Roots { values, thresholds: sizes.clone(), signed: false }.equalised(&sizes, 0.0);
+        let completion = Completion::new(&roots);
+        let felt =
+            Felt { roots, completed: completion.velocities, sizes, tolerance: 2e-8, iterations: [24, 300] };
+        Search::new(felt, completion.affinities)
+    }
+
+    #[test]
+    fn a_cylinder_grows_by_its_ends_and_not_by_another_part() {
+        let mut search = felt();
+        let side = Cluster::converged(&search.felt, (0..24).collect());
+        assert!(search.is_exact(&side), "{}", side.variance());
+        let found = search.grown(vec![side]);
+        assert_eq!(found.len(), 1);
+        assert_eq!(found[0].sensors, (0..32).collect::<Vec<_>>());
+        assert!(found[0].variance() < 1e-6, "{}", found[0].variance());
+    }
+
+    #[test]
+    fn a_cluster_grows_by_no_sensors_of_another_part() {
+        let mut search = felt();
+        // With both ends it has all of its motion, and one component to spare.
+        let all = Cluster::converged(&search.felt, (0..32).collect());
+        let found = search.grown(vec![all]);
+        assert_eq!(found[0].sensors, (0..32).collect::<Vec<_>>());
+    }
+}
