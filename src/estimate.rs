@@ -54,15 +54,16 @@ const GOOD: f64 = 0.8;
 const DOUBTFUL: f64 = 0.65;
 /// Different values up to which a sensor has levels, such as on and off.
 const LEVELS: usize = 8;
-/// Samples up to which a recording is short.
-const SHORT: usize = 500;
+/// Samples up to which a recording is short. About half of such recordings, of movements of people and animals, have a wrong tree
+/// although rigid motions explain what is felt (docs/own-data.md).
+const SHORT: usize = 1000;
 
 /// Whether rigid parts explain what sensors felt.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Verdict {
     /// They do.
     Good,
-    /// Of some sensors they do not.
+    /// Of some sensors they do not, or the recording is too short to tell.
     Doubtful,
     /// They do not: parts and tree mean nothing.
     DoesNotFit,
@@ -100,7 +101,7 @@ impl Fit {
             own.filter(|(label, residual)| !parts.unassigned.contains(label) && **residual <= most).count();
         let explained = count as f64 / parts.labels.len() as f64;
         let verdict = match explained {
-            share if share >= GOOD => Verdict::Good,
+            share if share >= GOOD && recording.tactile.samples > SHORT => Verdict::Good,
             share if share >= DOUBTFUL => Verdict::Doubtful,
             _ => Verdict::DoesNotFit,
         };
