@@ -54,7 +54,7 @@ const GOOD: f64 = 0.8;
 const DOUBTFUL: f64 = 0.65;
 /// Different values up to which a sensor has levels, such as on and off.
 const LEVELS: usize = 8;
-/// Samples up to which a recording is short. About half of such recordings, of movements of people and animals, have a wrong tree
+/// Samples below which a recording is short. About half of such recordings, of movements of people and animals, have a wrong tree
 /// although rigid motions explain what is felt (docs/own-data.md).
 const SHORT: usize = 1000;
 
@@ -101,7 +101,7 @@ impl Fit {
             own.filter(|(label, residual)| !parts.unassigned.contains(label) && **residual <= most).count();
         let explained = count as f64 / parts.labels.len() as f64;
         let verdict = match explained {
-            share if share >= GOOD && recording.tactile.samples > SHORT => Verdict::Good,
+            share if share >= GOOD && recording.tactile.samples >= SHORT => Verdict::Good,
             share if share >= DOUBTFUL => Verdict::Doubtful,
             _ => Verdict::DoesNotFit,
         };
@@ -185,7 +185,7 @@ fn cause(tactile: &Tactile, is_noisy: bool) -> &'static str {
     let with_levels = tactile.series().filter(|series| has_levels(series)).count();
     if 2 * with_levels > tactile.sensors() {
         "most sensors have a few levels only, such as contact pads, which do not feel speeds"
-    } else if tactile.samples <= SHORT {
+    } else if tactile.samples < SHORT {
         "the recording is short"
     } else if is_noisy {
         "most sensors are noisy"
@@ -218,4 +218,31 @@ fn excerpt(tactile: &Tactile, sensors: &[usize]) -> Tactile {
         own.into_iter().map(move |pressure| pressure - least)
     };
     Tactile { samples: samples.len(), pressures: sensors.iter().flat_map(own).collect() }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use super::*;
+
+    #[test]
+    fn the_fit_of_a_short_recording_is_doubtful_however_much_is_explained() {
+        let fit = |samples: usize| {
+            let pressures = (0..12 * samples).map(|at| (at % 7) as f32).collect();
+            let recording = Recording::new(Tactile { samples, pressures });
+            let parts = RigidParts {
+                labels: vec![0; 12],
+                residuals: vec![0.0; 12],
+                alternatives: vec![Vec::new(); 12],
+                unassigned: Vec::new(),
+                motions: BTreeMap::new(),
+            };
+            Fit::new(&parts, &recording)
+        };
+        assert_eq!(fit(SHORT).verdict, Verdict::Good);
+        let short = fit(SHORT - 1);
+        assert_eq!((short.verdict, short.explained), (Verdict::Doubtful, 1.0));
+        assert!(short.cause.is_some());
+    }
 }

@@ -32,7 +32,7 @@ class Fit:
     verdict : {"good", "doubtful", "does not fit"}
         Whether they do. If it is "does not fit", parts and tree mean nothing.
     explained : float
-        The share of sensors that the motion of a part explains, 0 to 1. From 0.8 on the verdict is good, from 0.65 on doubtful. Up to
+        The share of sensors that the motion of a part explains, 0 to 1. From 0.8 on the verdict is good, from 0.65 on doubtful. Below
         1,000 samples it is doubtful at best.
     cause : str or None
         What is likely to be the matter, unless the verdict is good.

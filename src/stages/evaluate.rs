@@ -101,8 +101,8 @@ pub fn joins(labels: &[usize], edge: &Edge, truth: &Truth) -> bool {
     parts.get(&edge.child).zip(parts.get(&edge.parent)).is_some_and(|(&a, &b)| truth.meet(a, b))
 }
 
-/// How many joints of the true tree an estimated tree has: edges that [join](joins) what is joined, without those that join again what
-/// others do, as edges to two clusters of one part would.
+/// How many joints of the true tree an estimated tree has, by the edges that [join](joins) what is joined. A joint that several edges
+/// join counts once.
 pub fn joints_right(labels: &[usize], tree: &[Edge], truth: &Truth) -> usize {
     let parts = majority(labels, truth);
     let nodes: BTreeMap<usize, usize> =

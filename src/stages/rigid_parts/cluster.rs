@@ -30,7 +30,7 @@ const MOMENTUM: [f64; 2] = [0.5, 0.98];
 const PACE: [f64; 2] = [1.1, 0.5];
 /// The least tolerance: what the iterations leave.
 pub(super) const LEAST_TOLERANCE: f64 = 3e-4;
-/// Residual variance at which more iterations say nothing new: somewhat more than rounding to single precision leaves.
+/// Residual variance at which more iterations say nothing new.
 pub(super) const ROUNDING: f64 = 1e-11;
 /// Degrees of freedom of its residual that a part must have per sample. With fewer, any sensors fit.
 pub(super) const MIN_FREEDOM: f64 = 1.0;

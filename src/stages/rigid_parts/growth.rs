@@ -17,21 +17,22 @@ const MAX_GROUP: usize = 24;
 const MIN_GROUP: usize = 2;
 
 impl Search {
-    /// Exact clusters with the sensors of no exact one that they explain: one by one, and those that are explained together.
+    /// Exact clusters with the sensors of no exact one that they explain: those that each fit, and those that fit only together.
     pub(super) fn grown(&mut self, clusters: Vec<Cluster>) -> Vec<Cluster> {
-        let one_by_one = |own: &Self, exact: &[Cluster]| -> Vec<Option<Cluster>> {
-            let wanted = own.wanted(exact);
-            exact.par_iter().zip(&wanted).map(|(cluster, wanted)| own.with_as_many(cluster, wanted)).collect()
+        let separately = |search: &Self, exact: &[Cluster]| -> Vec<Option<Cluster>> {
+            let both = (exact, search.wanted(exact));
+            both.into_par_iter().map(|(cluster, wanted)| search.with_as_many(cluster, &wanted)).collect()
         };
-        let together = |own: &Self, exact: &[Cluster]| -> Vec<Option<Cluster>> {
-            let rest = own.in_none(exact);
-            exact.par_iter().map(|cluster| own.with_group(cluster, &rest)).collect()
+        let together = |search: &Self, exact: &[Cluster]| -> Vec<Option<Cluster>> {
+            let rest = search.in_none(exact);
+            exact.par_iter().map(|cluster| search.with_group(cluster, &rest)).collect()
         };
-        let clusters = self.grown_by(clusters, one_by_one);
+        let clusters = self.grown_by(clusters, separately);
         self.grown_by(clusters, together)
     }
 
-    /// Exact clusters, each replaced by a larger one as long as there are any. What two want goes to that which explains it best.
+    /// Exact clusters, each replaced by a larger one as long as there are any. Of two that want the same sensor, the one that leaves less
+    /// gets it.
     fn grown_by(
         &mut self,
         mut clusters: Vec<Cluster>,
@@ -79,8 +80,7 @@ impl Search {
         wanted.into_iter().map(by_residual).collect()
     }
 
-    /// A cluster with the first of some sensors: all, or half of them, and so on, until it is exact and has components in common
-    /// with them.
+    /// A cluster with the first of some sensors: all, or half of them, and so on, until it is exact and explains them.
     fn with_as_many(&self, cluster: &Cluster, wanted: &[usize]) -> Option<Cluster> {
         let counts = std::iter::successors(Some(wanted.len()), |count| Some(count / 2));
         let with = |count: usize| {
@@ -92,7 +92,7 @@ impl Search {
     }
 
     /// A cluster with those of some sensors that one motion explains together with it, of those of highest affinity. All are tried, then
-    /// without the third that fits worst, and so on.
+    /// without the worst third of those that do not fit or that span a component alone, and so on.
     fn with_group(&self, cluster: &Cluster, rest: &[usize]) -> Option<Cluster> {
         let affinity =
             |sensor: usize| cluster.sensors.iter().map(|&own| self.affinities[(own, sensor)]).sum::<f64>();

@@ -21,7 +21,7 @@ use super::subspace::{Loadings, MotionSubspace, ROTATION_RANK};
 use crate::numerics::partition::named_by_appearance;
 use crate::stages::sense::Tactile;
 
-/// Samples at which a sensor must feel something to be searched for: four for each of the six numbers that its part says of it.
+/// Samples at which a sensor must feel something to be searched for: four for each of the six numbers of its c.
 const MIN_FELT: usize = 4 * MAX_RANK;
 /// Samples that parts are searched on, spread over all at which anything is felt.
 const MAX_SAMPLES: usize = 1500;
@@ -57,10 +57,10 @@ pub struct RigidParts {
 pub fn rigid_parts(tactile: &Tactile, sensors: &[usize]) -> RigidParts {
     let signed = is_signed(tactile);
     let all: Vec<&[f32]> = tactile.series().collect();
-    let mut some: Vec<&[f32]> = sensors.iter().map(|&sensor| all[sensor]).collect();
+    let given: Vec<&[f32]> = sensors.iter().map(|&sensor| all[sensor]).collect();
     let floors = floors(&all);
     let samples = telling_samples(
-        &some,
+        &given,
         &sensors.iter().map(|&sensor| floors[sensor]).collect::<Vec<_>>(),
         MAX_SAMPLES,
     );
@@ -70,11 +70,13 @@ pub fn rigid_parts(tactile: &Tactile, sensors: &[usize]) -> RigidParts {
     let every = every.scaled(&scales);
     let sizes = every.select(sensors).sizes();
     let every = every.equalised(&sizes, floor);
-    // Others are on the part that explains them best: they tell next to nothing, and span motions of their own.
-    let is_felt: Vec<bool> = (0..all.len()).map(|sensor| every.felt(sensor) >= MIN_FELT).collect();
-    let telling: Vec<usize> = sensors.iter().copied().filter(|&sensor| is_felt[sensor]).collect();
-    let sensors = if telling.len() >= MIN_SENSORS { &telling } else { sensors };
-    some = sensors.iter().map(|&sensor| all[sensor]).collect();
+    // Sensors that feel something at fewer samples tell next to nothing, and span motions of their own. They go to the part that explains
+    // them best, unless nearly all are such.
+    let tells = |sensor: usize| every.felt_samples(sensor) >= MIN_FELT;
+    let telling: Vec<usize> = sensors.iter().copied().filter(|&sensor| tells(sensor)).collect();
+    let are_enough = telling.len() >= MIN_SENSORS;
+    let sensors = if are_enough { &telling } else { sensors };
+    let some: Vec<&[f32]> = sensors.iter().map(|&sensor| all[sensor]).collect();
     let roots = every.select_as_they_are(sensors);
     let completion = Completion::new(&roots);
     let felt =
@@ -90,7 +92,7 @@ pub fn rigid_parts(tactile: &Tactile, sensors: &[usize]) -> RigidParts {
     }
     let residuals: Vec<Vec<f64>> = parts.par_iter().map(|part| part.shares(&every)).collect();
     for (sensor, label) in labels.iter_mut().enumerate() {
-        let most = if is_felt[sensor] { search.most_residual() } else { f64::INFINITY };
+        let most = if are_enough && !tells(sensor) { f64::INFINITY } else { search.most_residual() };
         *label = label.or_else(|| explaining(&residuals, sensor, most));
     }
     let rest: Vec<usize> = (0..all.len()).filter(|&sensor| labels[sensor].is_none()).collect();

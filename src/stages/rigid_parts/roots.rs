@@ -138,7 +138,7 @@ impl Roots {
     }
 
     /// At how many samples a sensor feels something.
-    pub(super) fn felt(&self, sensor: usize) -> usize {
+    pub(super) fn felt_samples(&self, sensor: usize) -> usize {
         let both = self.values.col_as_slice(sensor).iter().zip(&self.thresholds);
         both.filter(|(root, least)| root >= least).count()
     }

@@ -23,7 +23,7 @@ pub(super) const LEVELS: [(f64, [usize; 2]); 2] = [(2e-5, [24, 100]), (2e-8, [24
 const BETTER: f64 = 0.2;
 /// Variance in slow samples, as a share of that in fast ones, below which an error vanishes with the speed.
 const VANISHING: f64 = 0.25;
-/// Residual variance up to which the motion of a part leaves nothing but rounding.
+/// Residual variance up to which the motion of a cluster counts as leaving nothing.
 const NOTHING: f64 = 1e-9;
 /// Most rounds of separating, assigning, merging and growing, and of growing in each.
 pub(super) const MAX_ROUNDS: usize = 3;
@@ -31,19 +31,20 @@ pub(super) const MAX_ROUNDS: usize = 3;
 impl Search {
     /// The clusters as far as they are of one part, and the parts of the others; nothing if no parts can be told apart.
     pub(super) fn separated(&mut self, clusters: &[Cluster]) -> Option<Vec<Cluster>> {
-        let coarse = (self.felt.tolerance, self.felt.iterations);
-        let (mut last, mut found) = (coarse, None::<Vec<Cluster>>);
-        for level in LEVELS {
+        let before = (self.felt.tolerance, self.felt.iterations);
+        let (mut last, mut found) = (before, None::<Vec<Cluster>>);
+        for (at, level) in LEVELS.into_iter().enumerate() {
             (self.felt.tolerance, self.felt.iterations) = level;
             let converged = |own: &Cluster| Cluster::converged(&self.felt, own.sensors.clone());
             let start: Vec<Cluster> =
                 found.as_deref().unwrap_or(clusters).par_iter().map(converged).collect();
+            if at == 0 && !self.are_clear(&start) {
+                break;
+            }
             if start.iter().all(|own| self.is_exact(own)) {
                 continue;
             }
-            let more = (found.is_some() || self.are_exact(&start))
-                .then(|| self.separated_at(start, EXPLAINED * coarse.0));
-            let Some(more) = more.flatten() else { break };
+            let Some(more) = self.separated_at(start, EXPLAINED * before.0) else { break };
             (last, found) = (level, Some(more));
         }
         (self.felt.tolerance, self.felt.iterations) = last;
@@ -79,15 +80,15 @@ impl Search {
         Some(found)
     }
 
-    /// Whether the data are exact, up to rounding: most clusters are of one part and leave nothing, or of several and leave much, at all
-    /// speeds. If the model has an error, a part leaves something between, which vanishes in slow samples.
-    fn are_exact(&self, clusters: &[Cluster]) -> bool {
+    /// Whether most clusters are clear: of one part, which leaves nothing, or of several, which leave much, at all speeds. If the model
+    /// has an error, a part leaves something between, which vanishes in slow samples. With noise no piece will be exact.
+    fn are_clear(&self, clusters: &[Cluster]) -> bool {
         let told: Vec<&Cluster> = clusters.iter().filter(|own| own.freedom >= MIN_FREEDOM).collect();
-        let is_either = |own: &&&Cluster| {
+        let is_clear = |own: &&&Cluster| {
             own.variance() <= NOTHING
                 || !self.is_exact(own) && slow_share(&self.felt, &own.representatives) >= VANISHING
         };
-        2 * told.par_iter().filter(is_either).count() >= told.len()
+        !told.is_empty() && 2 * told.par_iter().filter(is_clear).count() >= told.len()
     }
 
     /// Whether one motion explains a cluster to the end, of enough that others would not do as well.

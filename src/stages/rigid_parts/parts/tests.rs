@@ -120,7 +120,7 @@ fn a_large_face_joins_the_part_that_it_shares_components_with() {
 fn a_sensor_that_feels_something_at_few_samples_makes_no_part() {
     let (Tactile { samples, pressures }, truth) = tactile();
     let mut rng = stream(7, 1, "few", 0);
-    // Of the first part, but heard at three samples only.
+    // Of the first part, but felt at three samples only.
     let few: Vec<f32> = (0..8)
         .flat_map(|_| {
             let mut series = vec![0.0; samples];
