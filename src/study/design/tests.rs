@@ -84,7 +84,8 @@ fn the_default_is_a_point_of_the_multiverse() {
     }
     let mut own = Settings::overlaid([&design.settings, &all], "").unwrap();
     let paper = Settings::paper();
-    assert_eq!((own.schema.chains, own.map.starts, own.experiment.simulations), (20, 2, 4));
+    let (chains, simulations) = (own.schema.chains, own.experiment.simulations);
+    assert!(simulations >= 4 && simulations * chains >= 20 && own.map.starts == 2);
     (own.schema.chains, own.map.starts) = (paper.schema.chains, paper.map.starts);
     own.experiment = paper.experiment.clone();
     assert_eq!(own, paper);
