@@ -3,7 +3,7 @@
 //! In: the part of each sensor and a tree over the parts, such as those of a posterior sample, and the [`Truth`]. Out: a
 //! [`Score`]: the adjusted Rand index, whether the tree is eligible, and whether it is right.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
@@ -105,11 +105,9 @@ pub fn joins(labels: &[usize], edge: &Edge, truth: &Truth) -> bool {
 /// join counts once.
 pub fn joints_right(labels: &[usize], tree: &[Edge], truth: &Truth) -> usize {
     let parts = majority(labels, truth);
-    let nodes: BTreeMap<usize, usize> =
-        parts.values().copied().collect::<BTreeSet<_>>().into_iter().zip(0..).collect();
-    let mut connected = Connected::new(nodes.len());
-    let right = tree.iter().filter(|edge| joins(labels, edge, truth));
-    right.filter(|edge| connected.connect(nodes[&parts[&edge.child]], nodes[&parts[&edge.parent]])).count()
+    let mut connected = Connected::new(truth.labels.iter().max().map_or(0, |last| last + 1));
+    let pairs = tree.iter().filter_map(|edge| parts.get(&edge.child).zip(parts.get(&edge.parent)));
+    pairs.filter(|&(&a, &b)| truth.meet(a, b) && connected.connect(a, b)).count()
 }
 
 /// Whether the estimated tree is the true one: every active cluster is matched to the part that most of

@@ -57,10 +57,10 @@ pub struct RigidParts {
 pub fn rigid_parts(tactile: &Tactile, sensors: &[usize]) -> RigidParts {
     let signed = is_signed(tactile);
     let all: Vec<&[f32]> = tactile.series().collect();
-    let given: Vec<&[f32]> = sensors.iter().map(|&sensor| all[sensor]).collect();
+    let series_of = |sensors: &[usize]| sensors.iter().map(|&sensor| all[sensor]).collect::<Vec<&[f32]>>();
     let floors = floors(&all);
     let samples = telling_samples(
-        &given,
+        &series_of(sensors),
         &sensors.iter().map(|&sensor| floors[sensor]).collect::<Vec<_>>(),
         MAX_SAMPLES,
     );
@@ -76,7 +76,7 @@ pub fn rigid_parts(tactile: &Tactile, sensors: &[usize]) -> RigidParts {
     let telling: Vec<usize> = sensors.iter().copied().filter(|&sensor| tells(sensor)).collect();
     let are_enough = telling.len() >= MIN_SENSORS;
     let sensors = if are_enough { &telling } else { sensors };
-    let some: Vec<&[f32]> = sensors.iter().map(|&sensor| all[sensor]).collect();
+    let some = series_of(sensors);
     let roots = every.select_as_they_are(sensors);
     let completion = Completion::new(&roots);
     let felt =

@@ -84,8 +84,7 @@ fn the_default_is_a_point_of_the_multiverse() {
     }
     let mut own = Settings::overlaid([&design.settings, &all], "").unwrap();
     let paper = Settings::paper();
-    let (chains, simulations) = (own.schema.chains, own.experiment.simulations);
-    assert!(simulations >= 4 && simulations * chains >= 20 && own.map.starts == 2);
+    assert_eq!((own.schema.chains, own.map.starts, own.experiment.simulations), (6, 2, 4));
     (own.schema.chains, own.map.starts) = (paper.schema.chains, paper.map.starts);
     own.experiment = paper.experiment.clone();
     assert_eq!(own, paper);
