@@ -25,7 +25,7 @@ const ROOMS: [&str; 13] = [
 ];
 
 /// The stages in order: each imports only those before it, and `baselines` and `schema` never each other.
-const STAGES: [&str; 16] = [
+const STAGES: [&str; 17] = [
     "tree",
     "agent",
     "simulate",
@@ -37,6 +37,7 @@ const STAGES: [&str; 16] = [
     "distance",
     "rigid_parts",
     "joints",
+    "placement",
     "body_map",
     "mixture",
     "baselines",

@@ -15,6 +15,7 @@ mod mistakes;
 mod multiverse;
 mod package;
 mod person;
+mod placement;
 mod properties;
 mod prose;
 mod recorded;

@@ -11,6 +11,7 @@ use serde::Serialize;
 use super::estimate_report::Shown;
 use super::options::{SettingsAndSeed, TruthFiles};
 use super::output::say;
+use super::placement;
 use super::touch::TouchFile;
 use super::tree::{self, refuse_truth};
 use crate::analysis::statistics::mean;
@@ -39,6 +40,9 @@ pub(super) struct Estimate {
     common: SettingsAndSeed,
     #[command(flatten)]
     truth: TruthFiles,
+    /// Position and normal of each sensor: adds body.urdf, parts as boxes (docs/own-data.md)
+    #[arg(long, value_name = "FILE")]
+    sensors: Option<PathBuf>,
     /// Show tree and report even if rigid parts do not explain the recording
     #[arg(long)]
     force: bool,
@@ -118,6 +122,7 @@ impl Estimate {
         let all = self.file.read()?;
         let (name, interval, count) = (all.name.clone(), all.interval, all.tactile.sensors());
         let truth = self.truth.read(count)?;
+        let sites = self.sensors.as_deref().map(|file| placement::read(file, count)).transpose()?;
         let recording = all.cleaned();
         // Before anything is written.
         ensure!(
@@ -141,6 +146,8 @@ impl Estimate {
         let shows_tree = self.force || found.fit.verdict != Verdict::DoesNotFit;
         let against = truth.as_ref().map(|truth| AgainstTruth::new(&found, &recording.truth(truth)));
         let summary = write(out, &found, &recording, (interval, seed), shows_tree, against)?;
+        let sites = sites.filter(|_| shows_tree).map(|sites| recording.of_sensors(&sites));
+        let placed = placement::write(out, &recording, &found, sites.as_deref())?;
         say(found.fit.to_string())?;
         if !shows_tree {
             say(format!(
@@ -167,6 +174,7 @@ impl Estimate {
             ))?;
         }
         tree::print(&found.joints, &found.parts.labels)?;
+        placed.into_iter().try_for_each(say)?;
         if let Some(truth) = truth {
             let score = score(&found.parts.labels, &found.joints.tree, &recording.truth(&truth), 1.0);
             tree::print_score(&score)?;

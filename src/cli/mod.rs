@@ -7,6 +7,7 @@ mod experiments;
 mod movement;
 mod options;
 mod output;
+mod placement;
 mod posterior;
 mod program;
 mod results;

@@ -14,8 +14,10 @@ pub mod npy;
 pub(crate) mod provenance;
 pub(crate) mod result_folder;
 pub(crate) mod ro_crate;
+pub mod sensor_sites;
 pub mod tables;
 pub mod touch;
+pub mod urdf;
 #[doc(hidden)]
 pub mod verify;
 mod whole;

@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use super::error::FileError;
 use super::npy::{read_matrix, write};
+use super::sensor_sites::{read_sites, write_sites};
 use super::tables::{read_rows, write_rows};
 use crate::stages::agent::{Agent, Shape, Site, Vector3};
 use crate::stages::simulate::{Pose, Trajectory};
@@ -48,18 +49,6 @@ enum Kind {
     Box,
 }
 
-#[derive(Serialize, Deserialize)]
-struct SensorRow {
-    sensor: usize,
-    solid: usize,
-    x_m: f64,
-    y_m: f64,
-    z_m: f64,
-    normal_x: f64,
-    normal_y: f64,
-    normal_z: f64,
-}
-
 impl MovedBody {
     /// A body and how it moved.
     pub(crate) fn of(agent: &Agent, trajectory: &Trajectory) -> Self {
@@ -89,7 +78,7 @@ impl MovedBody {
             &folder.join("solids.csv"),
             solids.map(|(at, (shape, &part))| solid_row(at, part, shape)),
         )?;
-        write_rows(&folder.join("sensors.csv"), self.sites.iter().enumerate().map(sensor_row))?;
+        write_sites(&folder.join("sensors.csv"), &self.sites)?;
         let shape = [self.poses.len() / self.shapes.len(), NUMBERS * self.shapes.len()];
         write(&folder.join("poses.npy"), shape, Order::C, self.poses.iter().flatten().copied())
     }
@@ -109,15 +98,12 @@ impl MovedBody {
         };
         let shapes: Vec<Shape> =
             read_rows(&solids)?.into_iter().enumerate().map(shape).collect::<Result<_, _>>()?;
-        let site = |(at, row): (usize, SensorRow)| {
-            let site = site_of(&row);
-            let finite = site.position.iter().chain(&site.normal).all(|number| number.is_finite());
-            if row.sensor != at || row.solid >= shapes.len() || !finite {
-                return Err(FileError::new(&sensors, format!("row {} is not sensor number {at}", at + 1)));
-            }
-            Ok(site)
-        };
-        let sites = read_rows(&sensors)?.into_iter().enumerate().map(site).collect::<Result<_, _>>()?;
+        let sites = read_sites(&sensors)?;
+        if let Some(at) = sites.iter().position(|site| site.part >= shapes.len()) {
+            let message =
+                format!("sensor {at} is on solid {}, but there are {} solids", sites[at].part, shapes.len());
+            return Err(FileError::new(&sensors, message));
+        }
         let matrix = read_matrix(&poses, Order::C, |value| {
             if value.is_finite() { Ok(value as f32) } else { Err("a pose must be finite numbers") }
         })?;
@@ -167,19 +153,6 @@ fn shape_of(row: &SolidRow, number: impl Fn(Option<f64>) -> Option<f64>) -> Opti
         Kind::Sphere => Shape::Sphere { radius: radius()? },
         Kind::Box => Shape::Box { sides: [number(row.x_m)?, number(row.y_m)?, number(row.z_m)?] },
     })
-}
-
-fn sensor_row((sensor, site): (usize, &Site)) -> SensorRow {
-    let ([x_m, y_m, z_m], [normal_x, normal_y, normal_z]) = (site.position, site.normal);
-    SensorRow { sensor, solid: site.part, x_m, y_m, z_m, normal_x, normal_y, normal_z }
-}
-
-fn site_of(row: &SensorRow) -> Site {
-    Site {
-        part: row.solid,
-        position: [row.x_m, row.y_m, row.z_m],
-        normal: [row.normal_x, row.normal_y, row.normal_z],
-    }
 }
 
 /// The quaternion w, x, y, z of a rotation matrix given by rows, with the largest of the four positive.
@@ -238,7 +211,7 @@ mod tests {
             "solid,part,shape,radius_m,length_m,x_m,y_m,z_m\n0,0,sphere,0.1,,,,\n",
         )
         .unwrap();
-        assert!(MovedBody::read(folder.path()).unwrap_err().to_string().contains("row 2 is not sensor"));
+        assert!(MovedBody::read(folder.path()).unwrap_err().to_string().contains("sensor 1 is on solid 1"));
     }
 
     #[test]

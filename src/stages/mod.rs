@@ -36,6 +36,7 @@ pub mod evaluate;
 pub mod joints;
 pub mod mixture;
 pub mod noise;
+pub mod placement;
 pub mod quantise;
 pub mod rigid_parts;
 pub mod schema;

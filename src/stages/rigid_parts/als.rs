@@ -10,7 +10,7 @@ use super::regressions::{LANES, Regressions};
 use crate::numerics::interrupt;
 
 /// Roots of some sensors, samples × sensors, whose loadings c and motion w are updated in turn.
-pub(super) struct Als<'a> {
+pub(crate) struct Als<'a> {
     /// All roots, by sensor.
     values: Vec<&'a [f64]>,
     /// At each sample, the least root that is felt; infinite after the last sample.
@@ -23,7 +23,7 @@ pub(super) struct Als<'a> {
 
 impl<'a> Als<'a> {
     /// Of roots, samples × sensors, which are felt from the threshold of their sample on.
-    pub(super) fn new(values: MatRef<'a, f64>, thresholds: &[f64]) -> Self {
+    pub(crate) fn new(values: MatRef<'a, f64>, thresholds: &[f64]) -> Self {
         let padded = [thresholds, &[f64::INFINITY; LANES]].concat();
         Self { values: by_sensor(values), thresholds: padded, completed: Vec::new(), weight: 0.0 }
     }
@@ -36,7 +36,7 @@ impl<'a> Als<'a> {
     /// Updates w at each sample by least squares over its informative roots, by w as it was.
     ///
     /// In: c, sensors × k. In and out: w, samples × k.
-    pub(super) fn update_motion(&self, loadings: MatRef<'_, f64>, motion: &mut Mat<f64>) {
+    pub(crate) fn update_motion(&self, loadings: MatRef<'_, f64>, motion: &mut Mat<f64>) {
         interrupt::check();
         let loadings = by_row(loadings);
         match motion.ncols() {
@@ -80,7 +80,7 @@ impl<'a> Als<'a> {
     }
 
     /// For each sensor, the residual sum of squares of its informative roots, and their number.
-    pub(super) fn residuals(&self, loadings: MatRef<'_, f64>, motion: &Mat<f64>) -> Vec<[f64; 2]> {
+    pub(crate) fn residuals(&self, loadings: MatRef<'_, f64>, motion: &Mat<f64>) -> Vec<[f64; 2]> {
         Arch::new().dispatch(Residuals { als: self, loadings: &by_row(loadings), motion })
     }
 

@@ -31,6 +31,7 @@ mod separation;
 mod stratified;
 mod subspace;
 
+pub(crate) use self::als::Als;
 pub(crate) use self::faces::{opposite_pairs, similar};
 pub(crate) use self::factorisation::MAX_RANK;
 pub(crate) use self::medians::typical_size;

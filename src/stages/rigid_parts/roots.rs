@@ -154,7 +154,7 @@ impl Roots {
     }
 
     /// The sum of all roots, and of their squares.
-    pub(super) fn sums(&self) -> [f64; 2] {
+    pub(crate) fn sums(&self) -> [f64; 2] {
         let sums = |values: &Mat<f64>| [values.sum(), values.squared_norm_l2()];
         if self.has_gaps() { sums(&self.filled()) } else { sums(&self.values) }
     }

@@ -1,0 +1,135 @@
+//! Read and write where sensors are: a row for each, with its position and its outward normal.
+
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use super::error::FileError;
+use super::tables::{read_rows, write_rows};
+use crate::stages::agent::Site;
+
+#[derive(Serialize)]
+struct Written {
+    sensor: usize,
+    solid: usize,
+    x_m: f64,
+    y_m: f64,
+    z_m: f64,
+    normal_x: f64,
+    normal_y: f64,
+    normal_z: f64,
+}
+
+/// As [`Written`], with the shorter names that people use.
+#[derive(Deserialize)]
+struct Read {
+    sensor: Option<usize>,
+    #[serde(alias = "frame")]
+    solid: Option<usize>,
+    #[serde(alias = "x")]
+    x_m: f64,
+    #[serde(alias = "y")]
+    y_m: f64,
+    #[serde(alias = "z")]
+    z_m: f64,
+    #[serde(alias = "nx")]
+    normal_x: f64,
+    #[serde(alias = "ny")]
+    normal_y: f64,
+    #[serde(alias = "nz")]
+    normal_z: f64,
+}
+
+/// Writes a table `sensor,solid,x_m,y_m,z_m,normal_x,normal_y,normal_z`, positions in the frames of the solids.
+///
+/// # Errors
+/// If the file cannot be written.
+pub(crate) fn write_sites(path: &Path, sites: &[Site]) -> Result<(), FileError> {
+    let row = |(sensor, site): (usize, &Site)| {
+        let ([x_m, y_m, z_m], [normal_x, normal_y, normal_z]) = (site.position, site.normal);
+        Written { sensor, solid: site.part, x_m, y_m, z_m, normal_x, normal_y, normal_z }
+    };
+    write_rows(path, sites.iter().enumerate().map(row))
+}
+
+/// Reads such a table; normals get length 1.
+///
+/// `sensor` may be missing: then rows are in the order of the sensors. `solid`, or `frame`, may be missing: then all positions are in one
+/// frame, of the body at rest, and `part` of each site is 0. Names without a unit (`x`, `nx`) will do, and other columns may follow.
+///
+/// # Errors
+/// If the file cannot be read, a number is missing or not finite, a normal is 0, or sensors are not counted 0, 1, 2, ….
+pub fn read_sites(path: &Path) -> Result<Vec<Site>, FileError> {
+    let rows: Vec<Read> = read_rows(path)?;
+    let site = |(at, row): (usize, Read)| {
+        let wrong = |message: String| Err(FileError::new(path, format!("line {}: {message}", at + 2)));
+        if let Some(sensor) = row.sensor.filter(|sensor| *sensor != at) {
+            return wrong(format!(
+                "sensor {sensor} is where sensor {at} should be; give each sensor one row, in order"
+            ));
+        }
+        let numbers = [
+            ("x_m", row.x_m),
+            ("y_m", row.y_m),
+            ("z_m", row.z_m),
+            ("normal_x", row.normal_x),
+            ("normal_y", row.normal_y),
+            ("normal_z", row.normal_z),
+        ];
+        if let Some((name, number)) = numbers.iter().find(|(_, number)| !number.is_finite()) {
+            return wrong(format!("{name} is {number}, but must be a finite number"));
+        }
+        let [x, y, z] = [row.normal_x, row.normal_y, row.normal_z];
+        let length = x.hypot(y).hypot(z);
+        if length <= 0.0 || !length.is_finite() {
+            return wrong(format!(
+                "the normal of sensor {at} has length {length}; it must point out of the surface"
+            ));
+        }
+        Ok(Site {
+            part: row.solid.unwrap_or(0),
+            position: [row.x_m, row.y_m, row.z_m],
+            normal: [x / length, y / length, z / length],
+        })
+    };
+    rows.into_iter().enumerate().map(site).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sites_are_read_as_they_were_written_and_as_people_write_them() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("sensors.csv");
+        let site = |part, x, normal| Site { part, position: [x, -0.5, 0.25], normal };
+        let sites = vec![site(0, 0.1, [1.0, 0.0, 0.0]), site(2, 0.2, [0.0, 0.6, 0.8])];
+        write_sites(&path, &sites).unwrap();
+        assert_eq!(read_sites(&path).unwrap(), sites);
+        std::fs::write(&path, "name,x,y,z,nx,ny,nz\na,0.1,-0.5,0.25,2,0,0\nb,0.2,-0.5,0.25,0,3,4\n").unwrap();
+        let at_rest: Vec<Site> = sites.into_iter().map(|site| Site { part: 0, ..site }).collect();
+        assert_eq!(read_sites(&path).unwrap(), at_rest);
+    }
+
+    #[test]
+    fn mistakes_are_named_with_their_line() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("sensors.csv");
+        for (rows, expected) in [
+            ("1,0,0,1,0,0", "line 2: sensor 1 is where sensor 0 should be"),
+            ("0,0,0,1,0,0\n1,inf,0,1,0,0", "line 3: x_m is inf"),
+            ("0,0,0,0,0,0", "line 2: the normal of sensor 0 has length 0"),
+            ("0,0,0,1e300,1e300,1e300", ""),
+            ("0,a,0,1,0,0", "line 2: "),
+        ] {
+            std::fs::write(&path, format!("sensor,x,y,nx,ny,nz,z\n{}\n", rows.replace('\n', ",0\n") + ",0"))
+                .unwrap();
+            let found = read_sites(&path).map_err(|error| error.to_string());
+            assert!(
+                expected.is_empty() == found.is_ok() && found.err().unwrap_or_default().contains(expected),
+                "{rows}"
+            );
+        }
+    }
+}

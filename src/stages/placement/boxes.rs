@@ -1,0 +1,82 @@
+//! Put a box around the sensors of a part.
+
+use nalgebra::{Matrix3, Rotation3, Vector3};
+
+/// Least side of a box, m.
+const THIN: f64 = 1e-3;
+
+/// A box along the principal axes of some points, which holds all of them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OrientedBox {
+    /// Centre, m.
+    pub centre: Vector3<f64>,
+    /// From the axes of the box to those of its frame.
+    pub rotation: Rotation3<f64>,
+    /// Lengths of the sides, m.
+    pub sides: Vector3<f64>,
+}
+
+impl OrientedBox {
+    /// Around at least one point.
+    pub(super) fn around(points: &[Vector3<f64>]) -> Self {
+        let mean = points.iter().sum::<Vector3<f64>>() / points.len() as f64;
+        let spread: Matrix3<f64> =
+            points.iter().map(|point| (point - mean) * (point - mean).transpose()).sum();
+        let mut axes = spread.symmetric_eigen().eigenvectors;
+        if axes.determinant() < 0.0 {
+            axes.column_mut(0).neg_mut();
+        }
+        let rotation = Rotation3::from_matrix_unchecked(axes);
+        let turned = |point: &Vector3<f64>| rotation.inverse() * point;
+        let (mut low, mut high) = (turned(&points[0]), turned(&points[0]));
+        for point in points.iter().map(turned) {
+            (low, high) = (low.inf(&point), high.sup(&point));
+        }
+        let sides = (high - low).map(|side| side.max(THIN));
+        Self { centre: rotation * ((low + high) / 2.0), rotation, sides }
+    }
+
+    /// Points where a joint may be: the centre, the middle of each face, and the corners.
+    pub(super) fn points(&self) -> impl Iterator<Item = Vector3<f64>> {
+        let steps = [-0.5, 0.0, 0.5];
+        let all = steps.into_iter().flat_map(move |x| {
+            steps.into_iter().flat_map(move |y| steps.into_iter().map(move |z| Vector3::new(x, y, z)))
+        });
+        // Not the middle of an edge.
+        let chosen = all.filter(|at| at.iter().filter(|step| **step == 0.0).count() != 1);
+        let Self { centre, rotation, sides } = *self;
+        chosen.map(move |at| centre + rotation * at.component_mul(&sides))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_box_holds_its_points_and_lies_along_them() {
+        let rotation = Rotation3::from_euler_angles(0.3, -0.7, 1.9);
+        let steps = [-1.0, -0.2, 0.4, 1.0];
+        let points: Vec<Vector3<f64>> = steps
+            .iter()
+            .flat_map(|x| steps.iter().map(move |y| Vector3::new(0.5 * x, 0.1 * y, 0.0)))
+            .map(|point| rotation * point + Vector3::new(1.0, 2.0, 3.0))
+            .collect();
+        let found = OrientedBox::around(&points);
+        let mut sides: Vec<f64> = found.sides.iter().copied().collect();
+        sides.sort_by(f64::total_cmp);
+        let expected = [THIN, 0.2, 1.0];
+        assert!(
+            sides.iter().zip(expected).all(|(side, expected)| (side - expected).abs() < 1e-9),
+            "{sides:?}"
+        );
+        assert!((found.centre - Vector3::new(1.0, 2.0, 3.0)).norm() < 1e-9);
+        assert!((found.rotation.matrix().determinant() - 1.0).abs() < 1e-9);
+        for point in &points {
+            let inside = found.rotation.inverse() * (point - found.centre);
+            assert!(inside.iter().zip(found.sides.iter()).all(|(at, side)| at.abs() <= side / 2.0 + 1e-9));
+        }
+        assert_eq!(found.points().count(), 15);
+        assert_eq!(OrientedBox::around(&points[..1]).sides, Vector3::repeat(THIN));
+    }
+}
