@@ -10,7 +10,7 @@
 //! benchmarks `estimate`, `src/study` runs many configurations, `src/analysis` judges claims, `src/report` writes pages and pictures,
 //! and `src/cli` has a file for each subcommand.
 //!
-//! For one's own robot, a [`recording`] is cleaned, and [`estimate`](mod@estimate) finds its parts and tree.
+//! A body also moves as a file has recorded it ([`movement`]). For one's own robot, a [`recording`] is cleaned, and [`estimate`](mod@estimate) finds its parts and tree.
 //!
 //! From a movement to a tree:
 //!
@@ -56,6 +56,7 @@ mod analysis;
 pub mod estimate;
 mod experiments;
 pub mod files;
+pub mod movement;
 pub mod numerics;
 pub mod pipeline;
 pub mod recording;

@@ -8,11 +8,12 @@ use syn::{Item, ItemMod};
 use crate::support::names::{Sources, is_in, sources, with};
 
 /// The rooms from the ground up: each imports only those before it.
-const ROOMS: [&str; 13] = [
+const ROOMS: [&str; 14] = [
     "numerics",
     "stages",
     "files",
     "settings",
+    "movement",
     "pipeline",
     "recording",
     "estimate",

@@ -4,7 +4,7 @@
 
 use bodyschema::files::body::{SkinEntry, read_body, write_body};
 use bodyschema::files::bvh::read_bvh;
-use bodyschema::files::import::{Bones, body_of_skeleton};
+use bodyschema::files::import::{Options, body_of_skeleton};
 use bodyschema::stages::sense::{Sense, sense};
 use bodyschema::stages::simulate::recorded::{Attached, longest_stretch, play, samples, still_on};
 use bodyschema_fuzz::{accepted, file, folder};
@@ -16,7 +16,7 @@ fuzz_target!(|data: &[u8]| {
     let Some(movement) = accepted(read_bvh(&file("walk.bvh", rest))) else { return };
     let skin = SkinEntry { sensors: Some(3), per_area: None };
     let scale = [None, Some(1.0), Some(0.01), Some(1e-4)][usize::from(kind % 4)];
-    let made = body_of_skeleton(&movement, skin, &Bones { scale, min_length: 0.05 });
+    let made = body_of_skeleton(&movement, &Options { skin, scale, ..Options::default() });
     let imported = match made {
         Ok(imported) => imported,
         Err(message) => return assert!(message.lines().count() <= 1, "{message:?}"),

@@ -1,17 +1,15 @@
 //! The subcommand body, and within it import.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
-use anyhow::{Result, bail, ensure};
+use anyhow::Result;
 use clap::{Args, Subcommand};
 
-use super::movement::skeleton_body;
 use super::options::metres;
 use super::output::say;
-use crate::files::body::{BodyFile, JointName, SkinEntry, write_body};
-use crate::files::bvh::read_bvh;
-use crate::files::import::{Bones, Imported, Options, SKIN, import};
+use crate::files::body::{BodyFile, JointName};
+use crate::files::import::{Imported, MIN_LENGTH, Options, SKIN, import_into};
 
 /// Makes files that describe a body, for simulate --body (not in the paper).
 #[derive(Args)]
@@ -49,7 +47,7 @@ struct Import {
     #[arg(long, value_name = "METRES", value_parser = metres)]
     scale: Option<f64>,
     #[arg(long, value_name = "METRES", value_parser = metres,
-          help = format!("BVH: length of a bone from which on it carries skin, m [default: {}]", Bones::MIN_LENGTH))]
+          help = format!("BVH: length of a bone from which on it carries skin, m [default: {}]", MIN_LENGTH))]
     min_length: Option<f64>,
     /// Robots: the body or link whose tree is imported [default: that of the largest tree]
     #[arg(long, value_name = "NAME")]
@@ -73,47 +71,15 @@ impl Body {
 
 impl Import {
     fn run(self) -> Result<ExitCode> {
-        let (robot, out) = (&self.robot, &self.out);
-        let skin = match (self.per_area, self.sensors_per_part) {
-            (Some(density), _) => SkinEntry { sensors: None, per_area: Some(density) },
-            (None, Some(count)) => SkinEntry { sensors: Some(count as usize), per_area: None },
-            (None, None) => SKIN,
-        };
-        let same =
-            |a: &Path, b: &Path| matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b);
-        ensure!(!same(robot, out), "{}: is the input file; give another --out", out.display());
-        let Imported { file, notes } = if is_bvh(robot) {
-            let for_robots = self.root.as_ref().map(|_| "--root").or(self.strict.then_some("--strict"));
-            if let Some(option) = for_robots {
-                bail!(
-                    "{}: {option} is for robots, and this is a recorded movement; leave it out",
-                    robot.display()
-                );
-            }
-            let bones = Bones { scale: self.scale, min_length: self.min_length.unwrap_or(Bones::MIN_LENGTH) };
-            skeleton_body(robot, &read_bvh(robot)?, skin, &bones)?
-        } else {
-            let for_bones = self.scale.map(|_| "--scale").or(self.min_length.map(|_| "--min-length"));
-            if let Some(option) = for_bones {
-                bail!(
-                    "{}: {option} is for recorded movements, whose names end in .bvh; leave it out",
-                    robot.display()
-                );
-            }
-            import(robot, &Options { skin, strict: self.strict, root: self.root })?
-        };
-        let name = robot.file_name().unwrap_or_default();
-        write_body(out, &format!("Imported from {name:?}."), &file)?;
+        let Self { robot, sensors_per_part, per_area, scale, min_length, root, strict, out } = self;
+        let options = Options { strict, root, scale, min_length, ..Options::default() }
+            .with_skin(sensors_per_part.map(|count| count as usize), per_area);
+        let Imported { file, notes } = import_into(&robot, &out, &options)?;
         say(format!("{} parts, in {}", file.parts.len(), out.display()))?;
         say(format!("joints: {}", joints(&file)))?;
         notes.into_iter().try_for_each(|note| say(format!("note: {note}")))?;
         Ok(ExitCode::SUCCESS)
     }
-}
-
-/// Whether a file is a recorded movement, by its name.
-fn is_bvh(path: &Path) -> bool {
-    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("bvh"))
 }
 
 /// How many joints of each kind a body has.

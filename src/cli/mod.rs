@@ -4,7 +4,6 @@ mod body;
 mod estimate;
 mod estimate_report;
 mod experiments;
-mod movement;
 mod options;
 mod output;
 mod placement;

@@ -7,12 +7,12 @@ use anyhow::Result;
 use clap::Args;
 use serde::Serialize;
 
-use super::movement::{Played, Recorded};
-use super::options::{SettingsAndSeed, paper, seconds, set, with_default};
+use super::options::{SettingsAndSeed, metres, paper, seconds, set, with_default};
 use super::output::say;
 use crate::files::body::{NamedBody, read_body};
 use crate::files::moved_body::MovedBody;
-use crate::files::{npy, prepare_folder, tables};
+use crate::files::{FrontEnd, npy, prepare_folder, tables};
+use crate::movement::{Played, Playing, move_as_recorded};
 use crate::numerics::rng::stream;
 use crate::settings::Settings;
 use crate::stages::agent::Agent;
@@ -40,8 +40,16 @@ pub(super) struct Simulate {
     /// Body to simulate, instead of the one in the settings: a .toml file, such as those in the folder bodies
     #[arg(long, value_name = "FILE")]
     body: Option<PathBuf>,
-    #[command(flatten)]
-    recorded: Recorded,
+    /// Recorded movement that the body makes, instead of one at random: a BVH file. Without --body, its skeleton is the body, as
+    /// `body import` makes it
+    #[arg(long, value_name = "FILE")]
+    movement: Option<PathBuf>,
+    /// Length of a unit of the recorded movement, m [default: as in the body; without --body, guessed]
+    #[arg(long, value_name = "METRES", value_parser = metres, requires = "movement")]
+    scale: Option<f64>,
+    /// Play all frames of the recorded movement, and not the longest stretch without a jump
+    #[arg(long, requires = "movement")]
+    keep_jumps: bool,
     #[arg(long, value_name = "SECONDS", value_parser = seconds,
           help = with_default("Time that is simulated, s; of a recorded movement at most its length", paper().physics.duration))]
     duration: Option<f64>,
@@ -62,15 +70,23 @@ impl Simulate {
         let mut settings = self.common.load(false)?;
         set(&mut settings.physics.duration, self.duration);
         let body = self.body.as_deref().map(read_body).transpose()?;
-        if let Some(movement) = &self.recorded.movement {
-            let interval = self.common.file.has("sense", "interval")?.then_some(settings.sense.interval);
-            let body = self.body.as_deref().zip(body);
-            let played = self.recorded.play(movement, body, interval, settings.physics.duration)?;
-            let Played { body, trajectory, interval, notes } = played;
+        if let Some(movement) = &self.movement {
+            let playing = Playing {
+                scale: self.scale,
+                keep_jumps: self.keep_jumps,
+                interval: self.common.file.has("sense", "interval")?.then_some(settings.sense.interval),
+                duration: settings.physics.duration,
+                front_end: FrontEnd::CommandLine,
+            };
+            let played = move_as_recorded(movement, self.body.as_deref().zip(body), &playing)?;
+            let Played { body, trajectory, interval, notes, cut } = played;
             settings.sense.interval = interval;
             prepare_folder(&self.out)?;
             let told = format!("{interval} s apart");
             self.write(&body.agent, Some(body.rigid_names()), &trajectory, &settings.sense, &told)?;
+            let turn = trajectory.resolution.turn;
+            let turn = format!("a part turns by at most {turn:.3} revolutions between two samples");
+            let notes = notes.into_iter().chain(cut).chain([turn]);
             notes.into_iter().try_for_each(|note| say(format!("note: {note}")))?;
             return Ok(ExitCode::SUCCESS);
         }

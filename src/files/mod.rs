@@ -5,6 +5,7 @@ pub mod body;
 pub mod bvh;
 pub(crate) mod checkpoint;
 mod error;
+mod front_end;
 pub mod graph;
 mod hash;
 pub mod import;
@@ -23,6 +24,7 @@ pub mod verify;
 mod whole;
 
 pub use self::error::{FileError, one_line};
+pub use self::front_end::FrontEnd;
 pub use self::hash::sha256;
 pub(crate) use self::hash::sha256_of_text;
 pub(crate) use self::whole::write_same_text;

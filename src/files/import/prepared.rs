@@ -78,11 +78,12 @@ fn one_tree(
         (0..links.len()).filter(|at| root_of[*at] == root && !links[*at].solids.is_empty()).count()
     };
     let roots: Vec<usize> = (0..links.len()).filter(|at| root_of[*at] == *at).collect();
+    let asked = options.front_end.name("root");
     let root = match &options.root {
         Some(name) => links
             .iter()
             .position(|link| link.name == *name)
-            .ok_or_else(|| format!("no {word} is called `{name}` (--root); give the name of one"))?,
+            .ok_or_else(|| format!("no {word} is called `{name}` ({asked}); give the name of one"))?,
         None => roots
             .iter()
             .copied()
@@ -96,12 +97,12 @@ fn one_tree(
     if let Some(names) = names(others.map(|&other| &*links[other].name)) {
         if options.strict && options.root.is_none() {
             return Err(format!(
-                "`{}` and others are bodies without a joint between them; name one with --root {names}",
+                "`{}` and others are bodies without a joint between them; name one with {asked} {names}",
                 links[root].name
             ));
         }
         notes.push(format!(
-            "the body is the tree of `{}`; other trees are left out (--root keeps another) {names}",
+            "the body is the tree of `{}`; other trees are left out ({asked} keeps another) {names}",
             links[root].name
         ));
     }

@@ -5,7 +5,7 @@ use nalgebra::{Isometry3, Translation3, UnitVector3, Vector3 as Column};
 use super::document::Wrong;
 use super::joined::joined;
 use super::notes::names;
-use super::options::{Imported, Options};
+use super::options::{Imported, MIN_LENGTH, Options};
 use super::placed::{Link, Solid, Turn, z_to};
 use super::units::{longest_way, unit};
 use crate::files::body::{BodyFile, SkinEntry};
@@ -17,20 +17,6 @@ use crate::stages::simulate::recorded::{Channel, RecordedMovement};
 const RADIUS: f64 = 0.15;
 /// Length of a bone below which it is none, m.
 const NO_LENGTH: f64 = 0.01;
-
-/// How a skeleton becomes a body.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Bones {
-    /// Length of a unit of the recording, m; guessed if it is not given.
-    pub scale: Option<f64>,
-    /// Length of a bone, m, from which on it carries skin.
-    pub min_length: f64,
-}
-
-impl Bones {
-    /// Length of a bone, m, from which on it carries skin, if the user says nothing: longer than most bones of fingers.
-    pub const MIN_LENGTH: f64 = 0.05;
-}
 
 /// Joints that do not move against each other, the one that carries all others first.
 struct Group {
@@ -56,24 +42,26 @@ struct Skeleton<'a> {
     notes: Vec<String>,
 }
 
-/// The body of capsules of a recorded skeleton, with this skin on all bones that are long enough.
+/// The body of capsules of a recorded skeleton, with skin on all bones that are long enough.
 ///
 /// # Errors
 /// If it has no bones, or is several bodies, or none that a body may be: the message says what is wrong and what to do.
-pub fn body_of_skeleton(
-    movement: &RecordedMovement,
-    skin: SkinEntry,
-    options: &Bones,
-) -> Result<Imported, Wrong> {
+pub fn body_of_skeleton(movement: &RecordedMovement, options: &Options) -> Result<Imported, Wrong> {
+    let [asked_scale, asked_length] = ["scale", "min-length"].map(|name| options.front_end.name(name));
+    let min_length = options.min_length.unwrap_or(MIN_LENGTH);
+    for (asked, length) in [(&asked_scale, options.scale), (&asked_length, Some(min_length))] {
+        if let Some(length) = length.filter(|length| !is_moderate(*length)) {
+            return Err(format!("{asked} is {length}, but must be 0.000001 to 1000000 (m)"));
+        }
+    }
     let (scale, note) = match options.scale {
-        Some(scale) if is_moderate(scale) => (scale, None),
-        Some(scale) => return Err(format!("--scale is {scale}, but must be 0.000001 to 1000000 (m)")),
+        Some(scale) => (scale, None),
         None => {
             let way = longest_way(movement);
             let (scale, name) = unit(way);
             let note = format!(
                 "the file names no unit: its bones span {way:.4} units at most, so {name} were assumed, which makes {:.2} m; \
-                 otherwise give the length of a unit in m with --scale",
+                 otherwise give the length of a unit in m with {asked_scale}",
                 way * scale
             );
             (scale, Some(note))
@@ -81,31 +69,29 @@ pub fn body_of_skeleton(
     };
     let mut skeleton = Skeleton::new(movement, scale);
     skeleton.notes.extend(note);
-    let links = skeleton.links()?;
-    let (mut parts, notes) = joined("joint", links, &Options { skin, ..Options::default() })?;
+    let links = skeleton.links(&asked_scale)?;
+    let (mut parts, notes) = joined("joint", links, options)?;
     let mut bare = 0;
     for part in &mut parts {
         let [from, to] = [part.from, part.to].map(|end| Column::from(end.unwrap_or_default()));
-        if (to - from).norm() < options.min_length {
+        if (to - from).norm() < min_length {
             part.skin = Some(SkinEntry { sensors: Some(0), per_area: None });
             bare += 1;
         }
     }
     if bare == parts.len() {
         return Err(format!(
-            "no bone is as long as {} m, from which on bones carry skin; lower --min-length, or check --scale",
-            options.min_length
+            "no bone is as long as {min_length} m, from which on bones carry skin; lower {asked_length}, or check {asked_scale}"
         ));
     }
     skeleton.notes.extend(notes);
     if bare > 0 {
         skeleton.notes.push(format!(
-            "bones shorter than {} m carry no skin, unless --min-length says so ({bare} of {})",
-            options.min_length,
+            "bones shorter than {min_length} m carry no skin, unless {asked_length} says so ({bare} of {})",
             parts.len()
         ));
     }
-    let file = BodyFile { density: None, skin: Some(skin), parts };
+    let file = BodyFile { density: None, skin: Some(options.skin), parts };
     file.body()?;
     Ok(Imported { file, notes: skeleton.notes })
 }
@@ -166,8 +152,8 @@ impl<'a> Skeleton<'a> {
     }
 
     /// The joints that have bones, each after the one that carries it. What is on a joint without bones goes to what carries
-    /// that; where there is nothing, all that is on it goes to the first of them.
-    fn links(&mut self) -> Result<Vec<Link>, Wrong> {
+    /// that; where there is nothing, all that is on it goes to the first of them. Messages call the scale `asked_scale`.
+    fn links(&mut self, asked_scale: &str) -> Result<Vec<Link>, Wrong> {
         let mut links: Vec<Link> = Vec::new();
         let mut link_of: Vec<Option<usize>> = vec![None; self.places.len()];
         let (mut first, mut on_first) = (None, Vec::new());
@@ -207,7 +193,9 @@ impl<'a> Skeleton<'a> {
             }
         }
         let Some(first) = first else {
-            return Err(format!("no bone is as long as {NO_LENGTH} m; check the offsets, or give --scale"));
+            return Err(format!(
+                "no bone is as long as {NO_LENGTH} m; check the offsets, or give {asked_scale}"
+            ));
         };
         let origin = self.places[first];
         for link in &mut links {

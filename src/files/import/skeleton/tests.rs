@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::files::body::JointName;
+use crate::files::front_end::FrontEnd;
 use crate::stages::agent::Vector3;
 use crate::stages::simulate::recorded::RecordedJoint;
 use Channel::{Position, Rotation};
@@ -42,8 +43,12 @@ fn moved(joints: Vec<RecordedJoint>, travel: &[&str]) -> RecordedMovement {
     RecordedMovement::new(joints, 0.1, values)
 }
 
+fn options() -> Options {
+    Options { skin: SKIN, ..Options::default() }
+}
+
 fn imported(joints: Vec<RecordedJoint>, travel: &[&str]) -> Result<Imported, Wrong> {
-    body_of_skeleton(&moved(joints, travel), SKIN, &Bones { scale: Some(1.0), min_length: 0.05 })
+    body_of_skeleton(&moved(joints, travel), &Options { scale: Some(1.0), ..options() })
 }
 
 /// Name, parent and joint of each part.
@@ -165,12 +170,12 @@ fn the_unit_is_guessed_and_said_and_what_is_no_body_is_refused() {
             joint("arm", 0, [0.0, length / 2.0, 0.0], &BALL, &[[length, 0.0, 0.0]]),
         ]
     };
-    let guess = |length: f64, bones: &Bones| body_of_skeleton(&moved(arm(length), &[]), SKIN, bones);
-    let free = Bones { scale: None, min_length: 0.05 };
+    let guess = |length: f64, options: &Options| body_of_skeleton(&moved(arm(length), &[]), options);
+    let of = |scale, min_length| Options { scale, min_length, ..options() };
     for (length, expected, reach) in
         [(1.0, "metres were assumed", 1.0), (100.0, "centimetres", 1.0), (45.0, "inches were", 45.0 * 0.0254)]
     {
-        let imported = guess(length, &free).unwrap();
+        let imported = guess(length, &options()).unwrap();
         assert!(
             imported.notes[0].contains(expected) && imported.notes[0].contains("--scale"),
             "{:?}",
@@ -179,14 +184,21 @@ fn the_unit_is_guessed_and_said_and_what_is_no_body_is_refused() {
         let to = imported.file.parts[2].to.unwrap();
         assert!((to[0] - reach).abs() < 1e-9, "{to:?}");
     }
-    for (length, bones, expected) in [
-        (1.0, Bones { scale: Some(1e-3), ..free }, "no bone is as long as 0.01 m"),
-        (0.0, free, "no bone is as long as 0.01 m"),
-        (1.0, Bones { min_length: 3.0, ..free }, "no bone is as long as 3 m, from which on bones carry skin"),
-        (1.0, Bones { scale: Some(f64::NAN), ..free }, "--scale is NaN"),
-        (1.0, Bones { scale: Some(1e5), ..free }, "part `root`"),
+    let python = Options { front_end: FrontEnd::Python, ..of(Some(1e-3), None) };
+    for (length, options, expected) in [
+        (1.0, of(Some(1e-3), None), "no bone is as long as 0.01 m; check the offsets, or give --scale"),
+        (1.0, python, "no bone is as long as 0.01 m; check the offsets, or give scale"),
+        (0.0, options(), "no bone is as long as 0.01 m"),
+        (
+            1.0,
+            of(None, Some(3.0)),
+            "no bone is as long as 3 m, from which on bones carry skin; lower --min-length",
+        ),
+        (1.0, of(None, Some(0.0)), "--min-length is 0, but must be"),
+        (1.0, of(Some(f64::NAN), None), "--scale is NaN"),
+        (1.0, of(Some(1e5), None), "part `root`"),
     ] {
-        let message = guess(length, &bones).unwrap_err();
+        let message = guess(length, &options).unwrap_err();
         assert!(message.contains(expected), "{message:?} lacks {expected:?}");
     }
 }

@@ -37,7 +37,7 @@ pub enum Misfit {
         distance: f64,
     },
     /// All joints are at one place, so that nothing says how long a unit is.
-    #[error("its joints do not say how long a unit of the recording is; give --scale METRES")]
+    #[error("its joints do not say how long a unit of the recording is")]
     NoScale,
 }
 
