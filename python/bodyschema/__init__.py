@@ -16,6 +16,7 @@ threads.
 
 from importlib.metadata import PackageNotFoundError, version as _version
 
+from ._bodies import BodyWarning, import_body
 from ._bodyschema import BODIES, REVISION, SEED
 from ._estimate import Estimate, Fit, Joints, RecordingWarning, estimate, estimate_tree, read_touch
 from ._schema import Posterior, dpgmm, dpgmm_lj
@@ -29,6 +30,7 @@ except PackageNotFoundError:  # used from its source folder
 
 __all__ = [
     "BODIES",
+    "BodyWarning",
     "Estimate",
     "Fit",
     "Joints",
@@ -43,6 +45,7 @@ __all__ = [
     "dpgmm_lj",
     "estimate",
     "estimate_tree",
+    "import_body",
     "information_metric",
     "quantise",
     "read_touch",

@@ -67,6 +67,14 @@ def number_of(value: Any, name: str) -> float:
     return float(value)
 
 
+def path_of(value: Any, name: str) -> str:
+    """The path of a file."""
+    path = os.fspath(value) if isinstance(value, (str, os.PathLike)) else None
+    if not isinstance(path, str):
+        raise ValueError(f"{name} must be the path of a file, but is {value!r}")
+    return path
+
+
 def matrix_of(values: Any, name: str, shape: str) -> np.ndarray:
     """A float32 or float64 array of two dimensions, without a copy if it is one already."""
     if isinstance(values, np.ma.MaskedArray):

@@ -22,7 +22,7 @@ mod _bodyschema {
     #[pymodule_export]
     use super::estimate::{estimate, read_touch, tree};
     #[pymodule_export]
-    use super::simulate::simulate;
+    use super::simulate::{import_body, play, simulate};
     #[pymodule_export]
     use super::stages::{body_map, information_metric, quantise, score};
 
