@@ -244,6 +244,41 @@ fn of_many_draws_that_of_highest_log_posterior_is_shown() {
     assert_eq!(said.status, Some(2), "{said:?}");
 }
 
+/// What the page of a body at rest shows.
+#[derive(Debug, Deserialize)]
+struct SeenAtRest {
+    /// Whether play, time and clock are hidden.
+    hidden: [bool; 3],
+    colourings: Vec<String>,
+    trees: Vec<String>,
+    /// Pixels of the body that are not white.
+    drawn: usize,
+    complaints: Vec<String>,
+}
+
+const AT_REST: &str = include_str!("support/at_rest.html");
+
+#[test]
+fn a_body_is_shown_before_it_moves_with_its_meshes() {
+    let folder = Folder::new();
+    let robot = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/import/robot/urdf/robot.urdf");
+    let said = folder.succeed(&format!("view {robot} --out robot.html"));
+    assert!(said.contains("sensors on ") && said.contains("note: link "), "{said}");
+    folder.succeed(&format!("body import {robot} --out robot.toml"));
+    folder.succeed("view robot.toml --out page.html");
+    for (page, meshes) in [("robot.html", 2), ("page.html", 0)] {
+        let page = folder.text(page);
+        assert_eq!(page.matches("\"kind\":\"mesh\"").count(), meshes);
+        let Some(seen) = seen(&AT_REST.replace("REPORT", &quoted(&page)), folder.path(), &WEBGL) else {
+            return;
+        };
+        let seen: SeenAtRest = serde_json::from_str(&seen).unwrap();
+        assert_eq!((seen.hidden, &seen.colourings[..]), ([true; 3], &["true part".to_owned()][..]));
+        assert_eq!((&seen.trees[..], &seen.complaints[..]), (&["True tree".to_owned()][..], &[][..]));
+        assert!(seen.drawn > 1000, "{seen:?}");
+    }
+}
+
 #[test]
 fn what_does_not_fit_is_said_in_one_line() {
     let folder = simulated();
@@ -257,9 +292,12 @@ fn what_does_not_fit_is_said_in_one_line() {
     for name in ["solids.csv", "sensors.csv", "poses.npy"] {
         fs::copy(folder.at("body").join(name), folder.at("torn").join(name)).unwrap();
     }
+    folder.write("short.toml", "");
     for (arguments, expected) in [
         ("absent", "absent: no such folder"),
         ("empty", "empty: has no tactile.npy or tactile.csv"),
+        ("own/tree.csv", "own/tree.csv: this is not well-formed XML"),
+        ("short.toml --estimate found", "short.toml: --tactile and --estimate are for a folder"),
         ("absent --tactile body/tactile.npy", "absent: no such folder"),
         ("body --tactile absent.npy", "absent.npy: no such file"),
         ("body --estimate fewer", "fewer/summary.json: is of 2 sensors, but the pressures are of 840"),

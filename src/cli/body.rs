@@ -74,7 +74,7 @@ impl Import {
         let Self { robot, sensors_per_part, per_area, scale, min_length, root, strict, out } = self;
         let options = Options { strict, root, scale, min_length, ..Options::default() }
             .with_skin(sensors_per_part.map(|count| count as usize), per_area);
-        let Imported { file, notes } = import_into(&robot, &out, &options)?;
+        let Imported { file, notes, .. } = import_into(&robot, &out, &options)?;
         say(format!("{} parts, in {}", file.parts.len(), out.display()))?;
         say(format!("joints: {}", joints(&file)))?;
         notes.into_iter().try_for_each(|note| say(format!("note: {note}")))?;

@@ -114,6 +114,7 @@ impl Shown<'_> {
             sensors: count,
             touch,
             body: None,
+            surfaces: Vec::new(),
             map: self.map(found, recording),
             truth: self.truth.map(Parts::of_truth),
             estimate: Some(Parts { of, tree: found.joints.tree.iter().map(edge).collect() }),

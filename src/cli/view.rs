@@ -1,15 +1,18 @@
 //! The subcommand view.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use anyhow::Result;
+use anyhow::{Result, ensure};
 use clap::Args;
 
 use super::options::SettingsFile;
 use super::output::say;
 use super::touch::{FormatOptions, say_guesses};
-use crate::files::write_text;
+use crate::files::body::read_body;
+use crate::files::import::{Imported, Options, import};
+use crate::files::{FileError, write_text};
+use crate::report::viewer::at_rest::at_rest;
 use crate::report::viewer::folder::{Sources, read};
 use crate::report::viewer::page::page;
 
@@ -18,11 +21,13 @@ use crate::report::viewer::page::page;
 /// DIR is a folder of `simulate` or `estimate`, or one with data of your own: tactile.npy (or .csv), and, if available, parts.csv
 /// (sensor,part) and tree.csv (child,parent,support). The body is shown if DIR has solids.csv, sensors.csv and poses.npy, as
 /// `simulate` writes them. Without body-map.npy, a map of three dimensions is computed as by `distance` and `map`.
+///
+/// Of a file, a body (.toml) or what `body import` reads, it shows the body at rest with its sensors, before anything is simulated.
 #[derive(Args)]
 pub(super) struct View {
-    /// Folder of a simulation, an estimate, or data of your own
-    #[arg(value_name = "DIR")]
-    folder: PathBuf,
+    /// Folder of a simulation, an estimate, or data of your own; or the file of a body
+    #[arg(value_name = "PATH")]
+    path: PathBuf,
     /// Pressures, if they are not in DIR, as `estimate` reads them
     #[arg(long, value_name = "FILE")]
     tactile: Option<PathBuf>,
@@ -34,7 +39,7 @@ pub(super) struct View {
     estimate: Option<PathBuf>,
     #[command(flatten)]
     file: SettingsFile,
-    /// File for the page [default: view.html in DIR]
+    /// File for the page [default: view.html in DIR, or FILE.html beside a file]
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
 }
@@ -42,20 +47,47 @@ pub(super) struct View {
 impl View {
     /// Runs the subcommand.
     pub(super) fn run(self) -> Result<ExitCode> {
+        let page_of = |default: PathBuf| self.out.clone().unwrap_or(default);
+        if self.path.is_file() {
+            return self.at_rest(&page_of(self.path.with_extension("html")));
+        }
         let settings = self.file.load(false)?;
         let format = self.format.format();
         let sources = Sources {
-            folder: &self.folder,
+            folder: &self.path,
             tactile: self.tactile.as_deref(),
             format: &format,
             estimate: self.estimate.as_deref(),
         };
         let (scene, guesses) = read(&sources, &settings)?;
-        say_guesses(&self.folder.display().to_string(), &guesses);
-        let out = self.out.unwrap_or_else(|| self.folder.join("view.html"));
-        let title = format!("Body schema of {}", self.folder.display());
+        say_guesses(&self.path.display().to_string(), &guesses);
+        let out = page_of(self.path.join("view.html"));
+        let title = format!("Body schema of {}", self.path.display());
         write_text(&out, &page(&title, &[scene.data()]))?;
         say(format!("{} sensors in {} frames, in {}", scene.sensors, scene.frames.count, out.display()))?;
+        Ok(ExitCode::SUCCESS)
+    }
+
+    /// Shows a body that has not moved.
+    fn at_rest(&self, out: &Path) -> Result<ExitCode> {
+        let path = &self.path;
+        ensure!(
+            self.tactile.is_none() && self.estimate.is_none(),
+            "{}: --tactile and --estimate are for a folder; leave them out for the file of a body",
+            path.display()
+        );
+        let is_body = path.extension().is_some_and(|extension| extension == "toml");
+        let (body, surfaces, notes) = if is_body {
+            (read_body(path)?, Vec::new(), Vec::new())
+        } else {
+            let Imported { file, notes, surfaces } = import(path, &Options::default())?;
+            let body = file.body().map_err(|message| FileError::new(path, message))?;
+            (body, surfaces, notes)
+        };
+        let scene = at_rest(&body, surfaces);
+        write_text(out, &page(&path.display().to_string(), &[scene.data()]))?;
+        say(format!("{} sensors on {} solids, in {}", scene.sensors, body.agent.parts.len(), out.display()))?;
+        notes.into_iter().try_for_each(|note| say(format!("note: {note}")))?;
         Ok(ExitCode::SUCCESS)
     }
 }

@@ -3,21 +3,28 @@
 
 use super::document::Wrong;
 use super::joints::{Joint, chain, joints};
-use super::options::Options;
+use super::options::{Options, Surface};
 use super::placed::{Link, Solid};
 use super::prepared::prepared;
 use super::tree::Tree;
 use crate::files::body::{JointName, PartEntry};
 
-/// The parts of links, each after its parent, and notes on what was changed. Messages call a link `word`.
-pub(super) fn joined(
-    word: &str,
-    links: Vec<Link>,
-    options: &Options,
-) -> Result<(Vec<PartEntry>, Vec<String>), Wrong> {
+/// Links that were made parts.
+#[derive(Debug)]
+pub(super) struct Joined {
+    /// The parts, each after its parent.
+    pub parts: Vec<PartEntry>,
+    /// The surfaces of those that stand for meshes.
+    pub surfaces: Vec<Surface>,
+    /// What was changed, in a line each.
+    pub notes: Vec<String>,
+}
+
+/// Makes parts of links. Messages call a link `word`.
+pub(super) fn joined(word: &str, links: Vec<Link>, options: &Options) -> Result<Joined, Wrong> {
     let (links, mut notes) = prepared(word, links, options)?;
     let tree = Tree::new(&links);
-    let mut parts = Vec::new();
+    let (mut parts, mut surfaces) = (Vec::new(), Vec::new());
     // The first link that has a shape, of a link and those it is fixed on, up to its rigid body's first.
     let mut shaped: Vec<Option<usize>> = Vec::new();
     for (at, link) in links.iter().enumerate() {
@@ -66,11 +73,12 @@ pub(super) fn joined(
                         None => {}
                     }
                 }
+                surfaces.extend(solid.surface().map(|triangles| Surface { part: parts.len(), triangles }));
                 parts.push(part);
             }
         }
     }
-    Ok((parts, notes))
+    Ok(Joined { parts, surfaces, notes })
 }
 
 /// Fixes a part of `link` to the first part of `parent`.

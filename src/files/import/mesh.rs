@@ -2,6 +2,7 @@
 
 mod dae;
 mod read;
+mod simplified;
 
 use std::f64::consts::PI;
 use std::path::Path;
@@ -118,6 +119,11 @@ impl Mesh {
             mesh.triangles.iter_mut().for_each(|[_, b, c]| std::mem::swap(b, c));
         }
         Ok(mesh)
+    }
+
+    /// Its triangles, or fewer that look alike.
+    pub(super) fn simplified(&self) -> Vec<[Column<f64>; 3]> {
+        simplified::simplified(&self.triangles)
     }
 
     /// Volume of what the mesh encloses, m³; negative if it looks inward.

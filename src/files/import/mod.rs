@@ -23,6 +23,6 @@ mod urdf;
 mod xml;
 
 pub(crate) use self::notes::names;
-pub use self::options::{Imported, MIN_LENGTH, Options, SKIN};
+pub use self::options::{Imported, MIN_LENGTH, Options, SKIN, Surface};
 pub use self::read::{import, import_into};
 pub use self::skeleton::body_of_skeleton;

@@ -2,6 +2,7 @@
 
 use crate::files::body::{BodyFile, SkinEntry};
 use crate::files::front_end::FrontEnd;
+use crate::stages::agent::Vector3;
 
 /// Skin of each part of an imported body, if the user says nothing.
 pub const SKIN: SkinEntry = SkinEntry { sensors: Some(40), per_area: None };
@@ -47,4 +48,15 @@ pub struct Imported {
     pub file: BodyFile,
     /// What it has in another way than the description, in a line each.
     pub notes: Vec<String>,
+    /// The surfaces of its parts that stand for meshes, to draw them.
+    pub surfaces: Vec<Surface>,
+}
+
+/// The surface of a mesh for which a part stands: fewer triangles than the mesh has, where it is fine.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Surface {
+    /// The part.
+    pub part: usize,
+    /// The corners of its triangles in the frame of the part, m.
+    pub triangles: Vec<[Vector3; 3]>,
 }

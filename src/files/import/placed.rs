@@ -238,6 +238,14 @@ impl Solid {
         Ok(Some(mesh.spread(count).into_iter().map(placed).collect()))
     }
 
+    /// The surface of the mesh that it stands for, in the frame of its shape, in as few triangles as a picture needs.
+    pub(super) fn surface(&self) -> Option<Vec<[Vector3; 3]>> {
+        let (mesh, pose) = self.mesh.as_ref()?;
+        let within = self.pose.inverse() * pose;
+        let corner = |corner: Column<f64>| (within * Point3::from(corner)).coords.into();
+        Some(mesh.simplified().into_iter().map(|corners| corners.map(corner)).collect())
+    }
+
     /// The solid as a part that is not joined yet, with this skin if it is a mesh.
     ///
     /// # Errors

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::document::Wrong;
 use super::document::parsed;
-use super::joined::joined;
+use super::joined::{Joined, joined};
 use super::located::Located;
 use super::options::{Imported, Options};
 use super::placed::Read;
@@ -70,12 +70,12 @@ fn imported(text: &str, files: &Located, options: &Options) -> Result<Imported, 
             return Err(format!("its root is <{other}>, but must be <mujoco> (MJCF) or <robot> (URDF)"));
         }
     };
-    let (parts, more) = joined(word, links, options)?;
+    let Joined { parts, surfaces, notes: more } = joined(word, links, options)?;
     notes.extend(more);
     let file = BodyFile { density: None, skin: Some(options.skin), parts };
     let body = file.body()?;
     notes.extend(far(&body.agent));
-    Ok(Imported { file, notes })
+    Ok(Imported { file, notes, surfaces })
 }
 
 /// Says if a body is larger than any robot: then its lengths may be in another unit.

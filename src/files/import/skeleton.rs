@@ -3,7 +3,7 @@
 use nalgebra::{Isometry3, Translation3, UnitVector3, Vector3 as Column};
 
 use super::document::Wrong;
-use super::joined::joined;
+use super::joined::{Joined, joined};
 use super::notes::names;
 use super::options::{Imported, MIN_LENGTH, Options};
 use super::placed::{Link, Solid, Turn, z_to};
@@ -70,7 +70,7 @@ pub fn body_of_skeleton(movement: &RecordedMovement, options: &Options) -> Resul
     let mut skeleton = Skeleton::new(movement, scale);
     skeleton.notes.extend(note);
     let links = skeleton.links(&asked_scale)?;
-    let (mut parts, notes) = joined("joint", links, options)?;
+    let Joined { mut parts, surfaces, notes } = joined("joint", links, options)?;
     let mut bare = 0;
     for part in &mut parts {
         let [from, to] = [part.from, part.to].map(|end| Column::from(end.unwrap_or_default()));
@@ -93,7 +93,7 @@ pub fn body_of_skeleton(movement: &RecordedMovement, options: &Options) -> Resul
     }
     let file = BodyFile { density: None, skin: Some(options.skin), parts };
     file.body()?;
-    Ok(Imported { file, notes: skeleton.notes })
+    Ok(Imported { file, notes: skeleton.notes, surfaces })
 }
 
 impl<'a> Skeleton<'a> {

@@ -80,6 +80,7 @@ pub(crate) fn read(sources: &Sources, settings: &Settings) -> Result<(Scene, Vec
         sensors,
         touch: shown,
         body,
+        surfaces: Vec::new(),
         map,
         truth,
         estimate,

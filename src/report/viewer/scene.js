@@ -13,6 +13,7 @@ function unpack(scene) {
   scene.levels = bytes(scene.touch.data);
   if (scene.map) scene.map = numbers(scene.map);
   for (const name of ["places", "normals", "centres", "turns"]) if (scene.body) scene.body[name] = numbers(scene.body[name]);
+  for (const solid of scene.body?.solids ?? []) if (solid.corners) solid.corners = numbers(solid.corners);
 }
 
 // The matrix of a solid, by columns, between two poses: turns from a and b, centres from c and d.

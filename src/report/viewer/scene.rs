@@ -5,6 +5,7 @@ use serde_json::{Value, json};
 
 use super::frames::Frames;
 use super::text::{Packed, base64};
+use crate::files::import::Surface;
 use crate::files::moved_body::{MovedBody, NUMBERS};
 use crate::stages::agent::Shape;
 use crate::stages::body_map::BodyMap;
@@ -28,6 +29,8 @@ pub(crate) struct Scene {
     pub touch: Vec<f32>,
     /// The body; `None` for that of one's own data.
     pub body: Option<MovedBody>,
+    /// The surfaces of solids that are not drawn as the shapes that they are for the engine.
+    pub surfaces: Vec<Surface>,
     /// Place of each sensor on the map, which has all of them.
     pub map: Option<BodyMap>,
     /// True parts and tree.
@@ -77,6 +80,8 @@ impl Scene {
         json!({
             "name": name,
             "frames": frames.count,
+            // A body at rest.
+            "still": frames.count == 1 && self.touch.iter().all(|pressure| *pressure == 0.0),
             "sensors": sensors,
             "start": frames.first as f64 * interval.unwrap_or(1.0),
             "step": frames.every as f64 * interval.unwrap_or(1.0),
@@ -120,9 +125,12 @@ impl Scene {
             poses.iter().flat_map(|pose| [0, 1, 2].map(|axis| f64::from(pose[axis]) - mean[axis])).collect()
         };
         let centres: Vec<f64> = poses.iter().flat_map(centred).collect();
+        let solid = |(at, own): (usize, &Shape)| {
+            self.surfaces.iter().find(|surface| surface.part == at).map_or_else(|| shape(own), mesh)
+        };
         let turns = poses.iter().flat_map(|poses| poses.iter().flat_map(|pose| &pose[3..]));
         json!({
-            "solids": shapes.iter().map(shape).collect::<Vec<_>>(),
+            "solids": shapes.iter().enumerate().map(solid).collect::<Vec<_>>(),
             "solid": sites.iter().map(|site| site.part).collect::<Vec<_>>(),
             "places": Packed::of(sites.iter().flat_map(|site| site.position)),
             "normals": Packed::of(sites.iter().flat_map(|site| site.normal)),
@@ -141,6 +149,10 @@ fn shape(shape: &Shape) -> Value {
         Shape::Sphere { radius } => json!({ "kind": "capsule", "radius": radius, "length": 0.0 }),
         Shape::Box { sides } => json!({ "kind": "box", "sides": sides }),
     }
+}
+
+fn mesh(surface: &Surface) -> Value {
+    json!({ "kind": "mesh", "corners": Packed::of(surface.triangles.iter().flatten().flatten().copied()) })
 }
 
 /// The first three dimensions of a map, from its mean; dimensions that it has not are 0.

@@ -222,8 +222,21 @@ function attribute(gl, location, buffer) {
   gl.vertexAttribPointer(location, 3, gl.FLOAT, false, 0, 0);
 }
 
+// The normals of triangles, the same for the three corners of each.
+function flat(corners) {
+  const normals = new Float32Array(corners.length);
+  for (let at = 0; at < corners.length; at += 9) {
+    const [u, v] = [3, 6].map(from => [0, 1, 2].map(axis => corners[at + from + axis] - corners[at + axis]));
+    const across = [0, 1, 2].map(axis => u[(axis + 1) % 3] * v[(axis + 2) % 3] - u[(axis + 2) % 3] * v[(axis + 1) % 3]);
+    const length = Math.hypot(...across) || 1;
+    for (let corner = 0; corner < 3; corner++) normals.set(across.map(x => x / length), at + 3 * corner);
+  }
+  return normals;
+}
+
 // The surface of a shape as triangles.
 function mesh(shape) {
+  if (shape.kind === "mesh") return { places: shape.corners, normals: flat(shape.corners) };
   const places = [], normals = [];
   const add = (corners, outward) => {
     for (const at of [0, 1, 2, 0, 2, 3]) {

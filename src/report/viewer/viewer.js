@@ -205,15 +205,16 @@ class Viewer {
       this.trees.push({ tree, of: parts.of });
     }
     box.hidden = this.trees.length === 0;
-    const choices = [["pressure", "pressure"], ["truth", "true part"], ["estimate", "estimated part"]].filter(([kind]) => kind === "pressure" || scene[kind]);
+    const choices = [["pressure", "pressure"], ["truth", "true part"], ["estimate", "estimated part"]].filter(([kind]) => kind === "pressure" ? !scene.still : scene[kind]);
     const select = this.find(".colouring select");
     select.replaceChildren(...choices.map(([kind, words]) => new Option(words, kind)));
-    this.colouring = choices.some(([kind]) => kind === this.colouring) ? this.colouring : "pressure";
+    this.colouring = choices.some(([kind]) => kind === this.colouring) ? this.colouring : choices[0][0];
     select.value = this.colouring;
     this.#legend();
     const slider = this.find(".time input");
     slider.max = frames - 1;
     this.find(".play").disabled = frames < 2;
+    for (const name of [".play", ".time", ".clock"]) this.find(name).hidden = scene.still;
     this.find(".sensor input").max = scene.sensors - 1;
     this.seek(this.frame);
   }
@@ -313,7 +314,7 @@ class Viewer {
       const part = (name, parts) => parts ? `, ${name} part ${parts.of[marked] ?? "none"}` : "";
       const share = this.level(marked, frame) / 255;
       const most = this.level(marked, frame) === 255 ? "at least " : "";
-      const felt = this.playing ? "" : `, feels ${most}${Number((share * share * touch.greatest).toPrecision(2))}${this.scene.body ? " Pa" : ""}`;
+      const felt = this.playing || this.scene.still ? "" : `, feels ${most}${Number((share * share * touch.greatest).toPrecision(2))}${this.scene.body ? " Pa" : ""}`;
       words = `Sensor ${marked}${part("true", truth)}${part("estimated", estimate)}${felt}`;
     } else if (this.chosen) {
       words = `Part ${this.chosen.part}: ${this.chosen.of.filter(part => part === this.chosen.part).length} sensors`;

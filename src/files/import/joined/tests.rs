@@ -28,7 +28,8 @@ const Z: Vector3 = [0.0, 0.0, 1.0];
 const FIXED: [Turn; 0] = [];
 
 fn joined(word: &str, links: &[Link]) -> Result<(Vec<PartEntry>, Vec<String>), Wrong> {
-    super::joined(word, links.to_vec(), &Options::default())
+    let Joined { parts, notes, .. } = super::joined(word, links.to_vec(), &Options::default())?;
+    Ok((parts, notes))
 }
 
 /// The same, with what a body cannot have refused.
@@ -290,7 +291,7 @@ fn the_body_is_the_largest_tree_or_that_of_a_name() {
     );
     let of = |name: &str| {
         let options = Options { root: Some(name.to_owned()), ..Options::default() };
-        super::joined("body", links.to_vec(), &options).map(|(parts, _)| names(&parts))
+        super::joined("body", links.to_vec(), &options).map(|joined| names(&joined.parts))
     };
     assert_eq!(of("target").unwrap(), ["target"]);
     assert_eq!(of("d").unwrap(), ["d", "d/2"]);

@@ -214,3 +214,22 @@ fn an_obj_is_read_by_its_vertices_and_faces_alone() {
         assert!(wrong.starts_with("m.obj: line 6: "), "{face}: {wrong}");
     }
 }
+
+#[test]
+fn a_fine_mesh_is_drawn_by_fewer_triangles_that_enclose_nearly_the_same() {
+    let cuboid = cuboid([1.0, 2.0, 4.0]);
+    assert_eq!(cuboid.simplified(), cuboid.triangles);
+    // A globe of 2304 triangles, each halved twice.
+    let halved = |mesh: Mesh| {
+        let halves = mesh.triangles.iter().flat_map(|[a, b, c]| {
+            let middle = (b + c) / 2.0;
+            [[*a, *b, middle], [*a, middle, *c]]
+        });
+        Mesh::new(halves.collect()).unwrap()
+    };
+    let fine = halved(halved(Mesh::ellipsoid([0.5, 1.0, 2.0]).unwrap()));
+    let drawn = Mesh::new(fine.simplified()).unwrap();
+    assert!(drawn.triangles.len() < fine.triangles.len() / 2, "{}", drawn.triangles.len());
+    // It is closed still, and looks outward.
+    assert!((drawn.signed_volume() / fine.signed_volume() - 1.0).abs() < 0.05, "{}", drawn.signed_volume());
+}
