@@ -4,7 +4,8 @@
 #![no_main]
 
 use bodyschema::estimate::estimate;
-use bodyschema::files::touch::{Decimal, Format, Separator, TimeColumn, read_recorded};
+use bodyschema::files::FrontEnd;
+use bodyschema::files::touch::{Column, Decimal, Format, Separator, TimeColumn, read_recorded};
 use bodyschema::numerics::rng::stream;
 use bodyschema::recording::Recording;
 use bodyschema::settings::Settings;
@@ -24,11 +25,12 @@ fn format(bits: u8) -> Format {
         header: is(3).then_some(is(4)),
         time: match bits >> 5 & 3 {
             1 => TimeColumn::None,
-            2 => TimeColumn::Is("2".to_owned()),
+            2 => TimeColumn::Is(Column::of_word("2")),
             _ => TimeColumn::Guess,
         },
-        leave_out: if is(7) { vec!["a".to_owned()] } else { Vec::new() },
+        leave_out: if is(7) { vec![Column::of_word("a")] } else { Vec::new() },
         array: None,
+        front_end: FrontEnd::default(),
     }
 }
 

@@ -6,8 +6,8 @@ use anyhow::Result;
 use clap::{Args, ValueEnum};
 
 use super::options::seconds;
-use crate::files::one_line;
-use crate::files::touch::{Decimal, Format, Recorded, Separator, TimeColumn, read_recorded};
+use crate::files::{FrontEnd, one_line};
+use crate::files::touch::{Column, Decimal, Format, Recorded, Separator, TimeColumn, read_recorded};
 use crate::recording::Recording;
 use crate::stages::sense::Tactile;
 
@@ -106,7 +106,7 @@ impl FormatOptions {
         let time = match self.time.as_deref() {
             None => TimeColumn::Guess,
             Some("none") => TimeColumn::None,
-            Some(column) => TimeColumn::Is(column.to_owned()),
+            Some(column) => TimeColumn::Is(Column::of_word(column)),
         };
         let separator = self.separator.map(|name| match name {
             SeparatorName::Comma => Separator::Comma,
@@ -123,8 +123,9 @@ impl FormatOptions {
             decimal,
             header: self.header.map(|own| own == YesOrNo::Yes),
             time,
-            leave_out: self.leave_out.clone(),
+            leave_out: self.leave_out.iter().map(|word| Column::of_word(word)).collect(),
             array: self.array.clone(),
+            front_end: FrontEnd::CommandLine,
         }
     }
 }

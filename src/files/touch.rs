@@ -14,7 +14,7 @@ use std::io::Read;
 use std::path::Path;
 
 use self::dialect::Dialect;
-pub use self::format::{Decimal, Format, Separator, TimeColumn};
+pub use self::format::{Column, Decimal, Format, Separator, TimeColumn};
 pub use self::recorded::Recorded;
 use self::source::{HEAD, Kind, Source};
 use super::error::FileError;
@@ -39,7 +39,8 @@ pub fn read_touch(path: &Path) -> Result<Tactile, FileError> {
 pub fn read_recorded(path: &Path, format: &Format) -> Result<Recorded, FileError> {
     let source = Source::open(path)?;
     if let Some(array) = format.array.as_ref().filter(|_| source.kind() != Kind::Npz) {
-        let message = format!("is no .npz archive, so that --array {array} means nothing");
+        let array = format.front_end.choice("array", [array, &format!("{array:?}")]);
+        let message = format!("is no .npz archive, so that {array} means nothing");
         return Err(FileError::new(&source.name, message));
     }
     let name = source.name.clone();
@@ -49,7 +50,8 @@ pub fn read_recorded(path: &Path, format: &Format) -> Result<Recorded, FileError
         Kind::Text => read_text(source, format),
     }?;
     if recorded.tactile.pressures.is_empty() {
-        let message = "has no column of a sensor; if its columns are no times, say --time none";
+        let message =
+            format!("has no column of a sensor; if its columns are no times, say {}", format.no_time());
         return Err(FileError::new(&name, message));
     }
     Ok(recorded)

@@ -16,7 +16,7 @@ const JITTER: f64 = 0.1;
 pub struct Clock {
     /// What tells it.
     pub mark: Mark,
-    /// Time from one sample to the next, s, where it is known: the median step.
+    /// Time from one sample to the next, s, where it is known: the median step, as exactly as the times say it.
     pub interval: Option<f64>,
 }
 
@@ -44,16 +44,17 @@ impl Display for Mark {
 impl Clock {
     /// Of a column with this name, if it has one; `None` if it may be a sensor.
     ///
-    /// In: all values, NaN where there is none.
-    pub fn of(name: Option<&str>, values: &[f64]) -> Option<Self> {
+    /// In: all values, NaN where there is none, and whether they were float32.
+    pub fn of(name: Option<&str>, values: &[f64], is_single: bool) -> Option<Self> {
         let unit = name.and_then(unit_of);
         let step = median_step(values);
         if let Some(unit) = unit {
-            return Some(Self { mark: Mark::Name, interval: step.map(|step| step * unit.seconds(values)) });
+            let interval = step.map(|step| in_seconds(step, unit, values, is_single));
+            return Some(Self { mark: Mark::Name, interval });
         }
         let step = step.filter(|step| values.len() >= MIN_VALUES && is_even(values, *step))?;
         let counts = step == 1.0 && values.iter().all(|value| value.fract() == 0.0);
-        let interval = (!counts).then(|| step * Unit::Unknown.seconds(values));
+        let interval = (!counts).then(|| in_seconds(step, Unit::Unknown, values, is_single));
         Some(Self { mark: if counts { Mark::Counts } else { Mark::EvenSteps }, interval })
     }
 }
@@ -146,6 +147,17 @@ fn median_step(values: &[f64]) -> Option<f64> {
     (!rising.is_empty()).then(|| *rising.select_nth_unstable_by(middle, f64::total_cmp).1)
 }
 
+/// A step in seconds: the number of fewest digits that differs from it by no more than the rounding errors of two times. Of times
+/// 0.1 s apart, differences are 0.09999999999999432 and the like.
+fn in_seconds(step: f64, unit: Unit, values: &[f64], is_single: bool) -> f64 {
+    let (seconds, step) = (unit.seconds(values), step * unit.seconds(values));
+    let largest =
+        values.iter().filter(|value| value.is_finite()).fold(0.0, |most: f64, own| most.max(own.abs()));
+    let error = seconds * largest * if is_single { f64::from(f32::EPSILON) } else { f64::EPSILON };
+    let mut shorter = (0..17).filter_map(|digits| format!("{step:.digits$e}").parse::<f64>().ok());
+    shorter.find(|shorter| (shorter - step).abs() <= error).unwrap_or(step)
+}
+
 /// Whether nearly all steps are this one.
 fn is_even(values: &[f64], step: f64) -> bool {
     let even = values.windows(2).filter(|pair| (pair[1] - pair[0] - step).abs() <= JITTER * step).count();
@@ -161,7 +173,7 @@ mod tests {
     }
 
     fn interval(name: Option<&str>, values: &[f64]) -> Option<f64> {
-        Clock::of(name, values).and_then(|clock| clock.interval)
+        Clock::of(name, values, false).and_then(|clock| clock.interval)
     }
 
     #[test]
@@ -178,21 +190,31 @@ mod tests {
             "Zeit",
             "nanosec",
         ] {
-            assert_eq!(Clock::of(Some(name), &rough).map(|clock| clock.mark), Some(Mark::Name), "{name}");
+            assert_eq!(
+                Clock::of(Some(name), &rough, false).map(|clock| clock.mark),
+                Some(Mark::Name),
+                "{name}"
+            );
         }
         for name in ["s", "left_0", "sensor", "timer_pad", "t", "", "pressure [Pa]", "ms", "seq"] {
-            assert_eq!(Clock::of(Some(name), &rough), None, "{name}");
+            assert_eq!(Clock::of(Some(name), &rough, false), None, "{name}");
         }
         assert!((interval(Some("time [ms]"), &even(5.0, 20.0)).unwrap() - 0.02).abs() < 1e-12);
         assert!((interval(Some("%time"), &even(1.7e18, 1e8)).unwrap() - 0.1).abs() < 1e-6);
         // Text, or nothing.
-        assert_eq!(Clock::of(Some("date"), &[f64::NAN; 3]), Some(Clock { mark: Mark::Name, interval: None }));
+        assert_eq!(
+            Clock::of(Some("date"), &[f64::NAN; 3], false),
+            Some(Clock { mark: Mark::Name, interval: None })
+        );
     }
 
     #[test]
     fn even_steps_tell_a_clock_without_a_name() {
         assert_eq!(interval(None, &even(1.7e9, 0.125)), Some(0.125));
-        assert_eq!(Clock::of(None, &even(3.0, 1.0)), Some(Clock { mark: Mark::Counts, interval: None }));
+        assert_eq!(
+            Clock::of(None, &even(3.0, 1.0), false),
+            Some(Clock { mark: Mark::Counts, interval: None })
+        );
         // A clock that jitters, lost some frames, and begins again.
         let mut values: Vec<f64> =
             even(0.0, 0.1).iter().enumerate().map(|(t, value)| value + 0.002 * (t as f64).sin()).collect();
@@ -202,12 +224,33 @@ mod tests {
     }
 
     #[test]
+    fn an_interval_has_the_digits_that_the_times_support() {
+        for (first, step, expected) in [
+            (0.0, 0.1, 0.1),
+            (-3.7, 0.01, 0.01),
+            (0.0, 0.016_667, 0.016_667),
+            // Since 1970 a time has fewer digits after the point.
+            (1.7e9, 0.1, 0.1),
+            (1.7e9, 1.0 / 60.0, 0.016_667),
+            (1.7e18, 16_666_667.0, 0.016_667),
+            (1.7e12, 33.0, 0.033),
+            // Exact ones stay.
+            (0.0, 1024.0 + 1.0 / 1024.0, 1024.000_976_562_5),
+        ] {
+            assert_eq!(interval(Some("time"), &even(first, step)), Some(expected));
+        }
+        let single: Vec<f64> = even(0.0, 0.1).into_iter().map(|time| f64::from(time as f32)).collect();
+        assert_eq!(Clock::of(None, &single, true).unwrap().interval, Some(0.1));
+        assert_ne!(Clock::of(None, &single, false).unwrap().interval, Some(0.1));
+    }
+
+    #[test]
     fn what_may_be_a_sensor_is_no_clock() {
         let speeds: Vec<f64> = (0..200).map(|t| (0.03 * f64::from(t)).sin().max(0.0).powi(2)).collect();
         let rising: Vec<f64> = (0..200).map(|t| (0.01 * f64::from(t)).exp()).collect();
         let few = even(0.0, 0.1)[..MIN_VALUES - 1].to_vec();
         for values in [speeds, rising, few, vec![2.0; 100], vec![f64::NAN; 100], Vec::new(), vec![1.0]] {
-            assert_eq!(Clock::of(None, &values), None, "{values:?}");
+            assert_eq!(Clock::of(None, &values, false), None, "{values:?}");
         }
         assert!(may_rise(&even(0.0, 1.0)) && !may_rise(&[0.0; 60]) && may_rise(&[1.0]));
     }

@@ -76,7 +76,7 @@ fn read(
         })?;
     }
     let candidates: Vec<(usize, Vec<f64>)> = candidates.into_iter().zip(values).collect();
-    let found = columns.found(&candidates, format);
+    let found = columns.found(&candidates, is_single, format);
     let kept = without(count, &found.left_out);
     Ok(Recorded { tactile: only(tactile, &kept), interval: found.interval, guesses: found.guesses })
 }
@@ -100,13 +100,13 @@ fn entry(bytes: &Bytes, format: &Format) -> Result<String, FileError> {
     let archive = archive(bytes)?;
     let array = |name: &str| name.strip_suffix(".npy").map(str::to_owned);
     let arrays: Vec<String> = archive.file_names().filter_map(|name| array(&name.ok()?)).collect();
-    let listed = arrays.join(", ");
+    let (listed, asked) = (arrays.join(", "), format.front_end.name("array"));
     let message = match (&format.array, &arrays[..]) {
         (Some(wanted), _) if arrays.contains(wanted) => return Ok(format!("{wanted}.npy")),
         (None, [only]) => return Ok(format!("{only}.npy")),
         (_, []) => "holds no array of NumPy".to_owned(),
-        (Some(wanted), _) => format!("has no array `{wanted}`; --array takes one of: {listed}"),
-        (None, _) => format!("holds {} arrays; say which with --array, one of: {listed}", arrays.len()),
+        (Some(wanted), _) => format!("has no array `{wanted}`; {asked} takes one of: {listed}"),
+        (None, _) => format!("holds {} arrays; say which with {asked}, one of: {listed}", arrays.len()),
     };
     Err(FileError::new(bytes.name(), message))
 }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::format::{Format, TimeColumn};
+use super::format::{Column, Format, TimeColumn};
 use crate::files::error::FileError;
 use crate::stages::clock::{Clock, is_time};
 
@@ -34,19 +34,20 @@ impl Columns {
         names: Vec<String>,
         format: &Format,
     ) -> Result<Self, FileError> {
-        let find = |wanted: &str, option: &str| {
+        let find = |wanted: &Column, option: &str| {
+            let asked = format.front_end.name(option);
             place(wanted, &names, count)
-                .ok_or_else(|| FileError::new(file, absent(wanted, option, &names, count)))
+                .ok_or_else(|| FileError::new(file, absent(wanted, &asked, &names, count)))
         };
         let times = match &format.time {
             TimeColumn::Guess => (0..names.len()).filter(|at| is_time(&names[*at])).collect(),
             TimeColumn::None => Vec::new(),
-            TimeColumn::Is(wanted) => vec![find(wanted, "--time")?],
+            TimeColumn::Is(wanted) => vec![find(wanted, "time")?],
         };
         let mut left_out = vec![false; count];
         times.iter().for_each(|at| left_out[*at] = true);
         for wanted in &format.leave_out {
-            left_out[find(wanted, "--leave-out")?] = true;
+            left_out[find(wanted, "leave-out")?] = true;
         }
         Ok(Self { names, times, left_out })
     }
@@ -59,8 +60,8 @@ impl Columns {
         }
     }
 
-    /// All columns that are no sensors. In: columns that may hold the time, with all their values.
-    pub(super) fn found(&self, candidates: &[(usize, Vec<f64>)], format: &Format) -> Found {
+    /// All columns that are no sensors. In: columns that may hold the time, with all their values, and whether these are float32.
+    pub(super) fn found(&self, candidates: &[(usize, Vec<f64>)], is_single: bool, format: &Format) -> Found {
         let is_said = format.time != TimeColumn::Guess;
         let mut left_out = self.left_out.clone();
         let (mut intervals, mut guesses) = (Vec::new(), Vec::new());
@@ -71,16 +72,16 @@ impl Columns {
                 Some(name) if is_time(name) => Some(name.as_str()),
                 _ => (is_named && is_said).then_some("time"),
             };
-            let clock = Clock::of(name, values).filter(|_| is_named || !is_said);
+            let clock = Clock::of(name, values, is_single).filter(|_| is_named || !is_said);
             let Some(Clock { mark, interval }) = clock else { continue };
             left_out[*at] = true;
             intervals.extend(interval);
             if !is_said {
-                let interval =
-                    interval.map_or(String::new(), |own| format!(" (interval {} s)", rounded(own)));
+                let interval = interval.map_or(String::new(), |own| format!(" (interval {own} s)"));
                 guesses.push(format!(
-                    "{} {mark}, and is no sensor{interval}; --time none counts it as one",
-                    self.in_words(*at)
+                    "{} {mark}, and is no sensor{interval}; {} counts it as one",
+                    self.in_words(*at),
+                    format.no_time()
                 ));
             }
         }
@@ -89,20 +90,18 @@ impl Columns {
     }
 }
 
-/// Six digits: without the rounding errors of differences.
-fn rounded(interval: f64) -> f64 {
-    format!("{interval:.5e}").parse().unwrap_or(interval)
-}
-
 /// The place of a column that is given by its number from 1 on, as messages count, or by its name.
-fn place(wanted: &str, names: &[String], count: usize) -> Option<usize> {
-    let by_name = names.iter().position(|name| name == wanted);
-    let by_name = by_name.or_else(|| names.iter().position(|name| name.eq_ignore_ascii_case(wanted)));
-    let by_number = || wanted.parse::<usize>().ok()?.checked_sub(1).filter(|at| *at < count);
-    by_number().or(by_name)
+fn place(wanted: &Column, names: &[String], count: usize) -> Option<usize> {
+    let by_number = wanted.number.and_then(|number| number.checked_sub(1)).filter(|at| *at < count);
+    let by_name = || {
+        let wanted = wanted.name.as_ref()?;
+        let same = names.iter().position(|name| name == wanted);
+        same.or_else(|| names.iter().position(|name| name.eq_ignore_ascii_case(wanted)))
+    };
+    by_number.or_else(by_name)
 }
 
-fn absent(wanted: &str, option: &str, names: &[String], count: usize) -> String {
+fn absent(wanted: &Column, option: &str, names: &[String], count: usize) -> String {
     let has = match names {
         [] => "which have no names".to_owned(),
         names => format!("such as `{}`", names[0]),
@@ -126,11 +125,11 @@ mod tests {
 
     #[test]
     fn two_clocks_are_both_left_out_and_both_said() {
-        let format = Format { leave_out: names(&["id"]), ..Format::default() };
+        let format = Format { leave_out: vec![Column::of_word("id")], ..Format::default() };
         let found = columns(&["%time", "seq", "id", "left"], &format).unwrap();
         assert_eq!((&found.times[..], &found.left_out[..]), (&[0][..], &[true, false, true, false][..]));
         let even = |step: f64| (0..50).map(|t| step * f64::from(t)).collect::<Vec<_>>();
-        let found = found.found(&[(0, even(0.25)), (1, even(1.0)), (3, vec![0.0; 50])], &format);
+        let found = found.found(&[(0, even(0.25)), (1, even(1.0)), (3, vec![0.0; 50])], false, &format);
         assert_eq!((found.left_out, found.interval), (vec![0, 1, 2], Some(0.25)));
         assert_eq!(
             found.guesses,
@@ -146,12 +145,22 @@ mod tests {
         let even: Vec<f64> = (0..50).map(f64::from).collect();
         let said = |time| Format { time, ..Format::default() };
         let none = said(TimeColumn::None);
-        let found = columns(&["time", "a"], &none).unwrap().found(&[(0, even.clone())], &none);
+        let found = columns(&["time", "a"], &none).unwrap().found(&[(0, even.clone())], false, &none);
         assert_eq!(found, Found::default());
-        let second = said(TimeColumn::Is("2".to_owned()));
-        let found = columns(&["time", "a"], &second).unwrap().found(&[(1, even)], &second);
+        let second = said(TimeColumn::Is(Column::of_word("2")));
+        let found = columns(&["time", "a"], &second).unwrap().found(&[(1, even)], false, &second);
         assert_eq!(found, Found { left_out: vec![1], interval: Some(1.0), guesses: Vec::new() });
-        let message = columns(&["a", "b"], &said(TimeColumn::Is("c".to_owned()))).err().unwrap();
+        let message = columns(&["a", "b"], &said(TimeColumn::Is(Column::of_word("c")))).err().unwrap();
         assert!(message.contains("t.csv: has no column `c`; --time takes a name"), "{message}");
+        // A name that is a number, and a number that is a name.
+        let counted = names(&["2", "1"]);
+        let place = |number, name: Option<&str>| {
+            place(&Column { number, name: name.map(str::to_owned) }, &counted, 2)
+        };
+        assert_eq!(
+            (place(Some(1), None), place(None, Some("1")), place(Some(1), Some("1"))),
+            (Some(0), Some(1), Some(0))
+        );
+        assert_eq!((place(Some(3), None), place(Some(0), None), place(None, Some("3"))), (None, None, None));
     }
 }

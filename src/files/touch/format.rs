@@ -1,5 +1,9 @@
 //! What a user may say of a file of pressures, so that it is not guessed.
 
+use std::fmt;
+
+use crate::files::front_end::FrontEnd;
+
 /// How a file holds pressures. What is not said is guessed.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Format {
@@ -11,10 +15,44 @@ pub struct Format {
     pub header: Option<bool>,
     /// Which column holds the time.
     pub time: TimeColumn,
-    /// Columns that are no sensors, by name or by number, from 1 on.
-    pub leave_out: Vec<String>,
+    /// Columns that are no sensors.
+    pub leave_out: Vec<Column>,
     /// The array of an `.npz` archive.
     pub array: Option<String>,
+    /// Whose words messages use.
+    pub front_end: FrontEnd,
+}
+
+impl Format {
+    /// That no column holds the time, as the front end has it.
+    pub(super) fn no_time(&self) -> String {
+        self.front_end.choice("time", ["none", "False"])
+    }
+}
+
+/// A column of a file: by its number, from 1 on, or else by its name.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Column {
+    /// The number, if it is one.
+    pub number: Option<usize>,
+    /// The name, if it is one.
+    pub name: Option<String>,
+}
+
+impl Column {
+    /// What a word may be.
+    pub fn of_word(word: &str) -> Self {
+        Self { number: word.parse().ok(), name: Some(word.to_owned()) }
+    }
+}
+
+impl fmt::Display for Column {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match (&self.name, self.number) {
+            (Some(name), _) => f.write_str(name),
+            (None, number) => write!(f, "{}", number.unwrap_or_default()),
+        }
+    }
 }
 
 /// What is between the cells of a table.
@@ -41,6 +79,16 @@ impl Separator {
         }
     }
 
+    /// As the command line and Python have it.
+    pub(super) fn said(self) -> [&'static str; 2] {
+        match self {
+            Self::Comma => ["comma", "\",\""],
+            Self::Semicolon => ["semicolon", "\";\""],
+            Self::Tab => ["tab", "\"\\t\""],
+            Self::Blank => ["blank", "\" \""],
+        }
+    }
+
     /// In words.
     pub(super) fn in_words(self) -> &'static str {
         match self {
@@ -61,6 +109,16 @@ pub enum Decimal {
     Comma,
 }
 
+impl Decimal {
+    /// As the command line and Python have it.
+    pub(super) fn said(self) -> [&'static str; 2] {
+        match self {
+            Self::Point => ["point", "\".\""],
+            Self::Comma => ["comma", "\",\""],
+        }
+    }
+}
+
 /// Which column holds the time, and so is no sensor.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub enum TimeColumn {
@@ -69,6 +127,6 @@ pub enum TimeColumn {
     Guess,
     /// None: every column is a sensor.
     None,
-    /// The one of this name, or of this number, from 1 on.
-    Is(String),
+    /// This one.
+    Is(Column),
 }

@@ -120,8 +120,10 @@ impl<'a> Head<'a> {
                 first <= 1 && (first..).zip(counted).all(|(at, cell)| at.to_string().as_bytes() == *cell)
             });
         if counts {
-            let guess = "row 1 counts the columns and is taken for names; --header no counts it as a sample";
-            self.guesses.push(guess.to_owned());
+            let header = self.format.front_end.choice("header", ["no", "False"]);
+            let guess =
+                format!("row 1 counts the columns and is taken for names; {header} counts it as a sample");
+            self.guesses.push(guess);
         }
         counts
     }
@@ -144,7 +146,7 @@ impl<'a> Head<'a> {
             {
                 return Err(FileError::new(
                     file,
-                    ragged(row, count, "the row of names", names.len(), dialect),
+                    ragged(row, count, "the row of names", names.len(), dialect, format),
                 ));
             }
             (Some(names), _) => names,
@@ -154,8 +156,9 @@ impl<'a> Head<'a> {
         let count = if names.is_empty() { count } else { names.len() };
         if dialect.is_guess {
             let decimals = if dialect.decimal == Decimal::Comma { ", and decimals have commas" } else { "" };
+            let [separator, decimal] = ["separator", "decimal"].map(|name| format.front_end.name(name));
             self.guesses.push(format!(
-                "cells are separated by {}{decimals}; --separator and --decimal say otherwise",
+                "cells are separated by {}{decimals}; {separator} and {decimal} say otherwise",
                 dialect.separator.in_words()
             ));
         }
@@ -207,7 +210,14 @@ impl Body<'_> {
             [own @ .., b""] if own.len() == self.count => own,
             cells if cells.len() == self.count => cells,
             cells => {
-                let message = ragged(row, cells.len(), "the first row of numbers", self.count, self.dialect);
+                let message = ragged(
+                    row,
+                    cells.len(),
+                    "the first row of numbers",
+                    self.count,
+                    self.dialect,
+                    self.format,
+                );
                 return Err(FileError::new(self.file, message));
             }
         };
@@ -247,10 +257,11 @@ impl Body<'_> {
         let is_rest = |cell: &&[u8]| cell.len() > 1 && cell[0] == b'0' && cell.iter().all(u8::is_ascii_digit);
         let Some(at) = cells.iter().position(is_rest) else { return Ok(()) };
         let message = format!(
-            "row {row}, {}: `{}` seems to be the decimals of the cell before; write the table with `;` between cells, or say \
-             --decimal point if its numbers are whole",
+            "row {row}, {}: `{}` seems to be the decimals of the cell before; write the table with `;` between cells, or say {} \
+             if its numbers are whole",
             self.columns.in_words(at),
-            String::from_utf8_lossy(cells[at])
+            String::from_utf8_lossy(cells[at]),
+            self.format.front_end.choice("decimal", Decimal::Point.said())
         );
         Err(FileError::new(self.file, message))
     }
@@ -260,21 +271,22 @@ impl Body<'_> {
         let Dialect { separator, decimal, .. } = self.dialect;
         let has = |byte: u8| cell.contains(&byte);
         let other = |byte: u8, own: Separator| separator != own && has(byte);
-        let number = at + 1;
+        let say = |name: &str, value: [&str; 2]| self.format.front_end.choice(name, value);
+        let number = &(at + 1).to_string();
         let help = if is_date(cell) && (has(b':') || has(b'-')) {
-            format!("if it is a time, say --time {number}")
+            format!("if it is a time, say {}", say("time", [number, number]))
         } else if other(b';', Separator::Semicolon) {
-            "if `;` is between cells, say --separator semicolon".to_owned()
+            format!("if `;` is between cells, say {}", say("separator", Separator::Semicolon.said()))
         } else if other(b'\t', Separator::Tab) {
-            "if tabs are between cells, say --separator tab".to_owned()
+            format!("if tabs are between cells, say {}", say("separator", Separator::Tab.said()))
         } else if decimal == Decimal::Point && has(b',') {
-            "if decimals have commas, say --decimal comma".to_owned()
+            format!("if decimals have commas, say {}", say("decimal", Decimal::Comma.said()))
         } else if decimal == Decimal::Comma && has(b'.') {
-            "decimals have commas here; if they have points, say --decimal point".to_owned()
+            let point = say("decimal", Decimal::Point.said());
+            format!("decimals have commas here; if they have points, say {point}")
         } else {
-            format!(
-                "empty the cell if a value is missing, or say --leave-out {number} if the column is no sensor"
-            )
+            let leave_out = say("leave-out", [number, &format!("[{number}]")]);
+            format!("empty the cell if a value is missing, or say {leave_out} if the column is no sensor")
         };
         let shown: String = String::from_utf8_lossy(cell).chars().take(40).collect();
         format!("row {row}, {}: `{shown}` is not a number; {help}", self.columns.in_words(at))
@@ -284,7 +296,7 @@ impl Body<'_> {
     fn finish(mut self, mut guesses: Vec<String>) -> Recorded {
         let times = &self.columns.times;
         self.rising.retain(|(at, values)| times.contains(at) || may_rise(values));
-        let found = self.columns.found(&self.rising, self.format);
+        let found = self.columns.found(&self.rising, false, self.format);
         guesses.extend(found.guesses);
         let kept = without(self.count, &found.left_out);
         let of = |sensor: usize| self.by_time[sensor..].iter().step_by(self.count).copied();
@@ -295,15 +307,18 @@ impl Body<'_> {
 }
 
 /// What is wrong with a row of another length.
-fn ragged(row: u64, has: usize, other: &str, expected: usize, Dialect { separator, .. }: Dialect) -> String {
-    let help = match separator {
+fn ragged(row: u64, has: usize, other: &str, expected: usize, dialect: Dialect, format: &Format) -> String {
+    let help = match dialect.separator {
         Separator::Comma if has == 2 * expected => {
-            "if commas are decimal ones, write the table with `;` between cells"
+            "if commas are decimal ones, write the table with `;` between cells".to_owned()
         }
-        Separator::Blank => {
-            "write nan where a value is missing, or say what is between cells with --separator"
+        separator => {
+            let repair = match separator {
+                Separator::Blank => "write nan where a value is missing",
+                _ => "repair or delete the row",
+            };
+            format!("{repair}, or say what is between cells with {}", format.front_end.name("separator"))
         }
-        _ => "repair or delete the row, or say what is between cells with --separator",
     };
     format!("row {row} has {has} cells, but {other} has {expected}; {help}")
 }

@@ -101,7 +101,7 @@ fn a_column_of_times_is_no_sensor_and_gives_the_interval() {
             "x" => assert!(all.unwrap_err().contains("say --time 1"), "a date is no number"),
             _ => assert_eq!((all.as_ref().unwrap().tactile.sensors(), all.unwrap().guesses.len()), (4, 0)),
         }
-        let first = Format { time: TimeColumn::Is("1".to_owned()), ..Format::default() };
+        let first = Format { time: TimeColumn::Is(Column::of_word("1")), ..Format::default() };
         assert_eq!(read_as(table(names, time), &first).unwrap().tactile, found.tactile);
     }
     let two = read(table("%time,field.seq,field.stamp,field.id,a,b,c\n", |t| {
@@ -110,7 +110,7 @@ fn a_column_of_times_is_no_sensor_and_gives_the_interval() {
     assert!(
         two.unwrap_err().contains("row 2, column 4 (`field.id`): `skin` is not a number; empty the cell")
     );
-    let format = Format { leave_out: vec!["field.id".to_owned()], ..Format::default() };
+    let format = Format { leave_out: vec![Column::of_word("field.id")], ..Format::default() };
     let two =
         table("%time,field.seq,field.stamp,field.id,a,b,c\n", |t| format!("{t}e8,{},{t}e8,skin,", t + 7));
     let found = read_as(two, &format).unwrap();
@@ -170,7 +170,7 @@ fn what_is_no_table_of_numbers_is_named_with_its_place_and_what_helps() {
     assert_eq!(read_as("1,05,2,75\n", &point).unwrap().tactile.sensors(), 4);
     let message = read_as("1,2\n", &Format { array: Some("x".to_owned()), ..Format::default() }).unwrap_err();
     assert!(message.contains("is no .npz archive"), "{message}");
-    let absent = Format { time: TimeColumn::Is("5".to_owned()), ..Format::default() };
+    let absent = Format { time: TimeColumn::Is(Column::of_word("5")), ..Format::default() };
     assert!(read_as("1,2\n", &absent).unwrap_err().contains("has no column `5`; --time takes a name"));
     let folder = tempfile::tempdir().unwrap();
     assert!(read_recorded(folder.path(), &point).unwrap_err().to_string().contains("is a folder"));
