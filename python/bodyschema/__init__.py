@@ -18,7 +18,8 @@ from importlib.metadata import PackageNotFoundError, version as _version
 
 from ._bodies import BodyWarning, import_body
 from ._bodyschema import BODIES, REVISION, SEED
-from ._estimate import Estimate, Fit, Joints, RecordingWarning, estimate, estimate_tree, read_touch
+from ._estimate import Estimate, Fit, Joints, estimate, estimate_tree
+from ._reading import RecordingWarning, read_touch
 from ._schema import Posterior, dpgmm, dpgmm_lj
 from ._simulate import Simulation, simulate
 from ._stages import Score, body_map, information_metric, quantise, score

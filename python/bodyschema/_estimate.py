@@ -2,25 +2,16 @@
 
 from __future__ import annotations
 
-import errno
-import os
 import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, Optional, Union
+from typing import Any, Optional
 
 import numpy as np
 
 from . import _bodyschema, _picture
-from ._arguments import Progress, RandomState, count_of, jobs_of, labels_of, matrix_of, number_of, progress_of, seed_of
-
-SHAPE = "a row for each sample in time, a column for each sensor"
-# Samples over which no sensor only rises.
-MONOTONE = 20
-
-
-class RecordingWarning(UserWarning):
-    """Something about a recording that its owner should know: what was left out, or that the method does not fit it."""
+from ._arguments import Progress, RandomState, count_of, jobs_of, labels_of, number_of, progress_of, seed_of
+from ._reading import RecordingWarning, touch_of
 
 
 @dataclass(frozen=True)
@@ -213,56 +204,6 @@ class Estimate(Joints):
         return _picture.page(self)
 
 
-def read_touch(path: Union[str, os.PathLike[str]]) -> np.ndarray:
-    """Read a recording from a file, as the command line does.
-
-    Parameters
-    ----------
-    path : str or path
-        A table in text, a `.npy` file or an `.npz` archive: a row for each sample in time, a column for each sensor. A column of
-        times is left out.
-
-    Returns
-    -------
-    ndarray of shape (T, M), float32
-        The pressures; NaN where there is no value.
-
-    Raises
-    ------
-    FileNotFoundError
-        If there is no such file.
-    ValueError
-        If it is no table of numbers; the message names the row and the column.
-
-    Warns
-    -----
-    RecordingWarning
-        What was guessed of the file, such as its separator and which column is the time.
-    """
-    return _read(path)[0]
-
-
-def _read(path: Union[str, os.PathLike[str]]) -> tuple[np.ndarray, Optional[float]]:
-    """A recording from a file, and the time between two samples, s, if the file tells it."""
-    path = os.fspath(path)
-    if not os.path.exists(path):
-        raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), path)
-    array, interval, guesses = _bodyschema.read_touch(path, jobs_of(-1))
-    for guess in guesses:
-        warnings.warn(f"{path}: {guess}", RecordingWarning, stacklevel=4)
-    return array, interval
-
-
-def touch_of(touch: Any) -> tuple[np.ndarray, Optional[float]]:
-    """A recording, T × M float32 or float64, from a file or anything that NumPy takes for an array; and its interval, if known."""
-    if isinstance(touch, (str, os.PathLike)):
-        return _read(touch)
-    array = matrix_of(touch, "touch", SHAPE)
-    if array.shape[0] > MONOTONE and array.shape[1] > 0 and bool(np.all(array[1:, 0] > array[:-1, 0])):
-        raise ValueError("column 0 of touch rises with every row, as a time does and no sensor: leave it out, touch[:, 1:]")
-    return array, None
-
-
 def estimate(
     touch: Any,
     interval: Optional[float] = None,
@@ -282,7 +223,7 @@ def estimate(
     ----------
     touch : array-like of shape (T, M), or the path of a file
         Pressures of M sensors at T samples, in any unit; 12 to 20,000 sensors. NaN where there is no value. The path of a
-        table, a `.npy` file or an `.npz` archive will do. A float32 or float64 array is read where it is, in any order of memory,
+        table, a `.npy` file or an `.npz` archive will do; `read_touch` takes what is not to be guessed of it. A float32 or float64 array is read where it is, in any order of memory,
         and is not changed.
     interval : float, optional
         Time between two samples, s. It only labels the time. By default that of the column of times of a file.

@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 
 use bodyschema::estimate::{Estimate, TooFewSensors, Verdict, estimate as estimate_of};
-use bodyschema::files::touch::{self, Recorded};
+use bodyschema::files::FrontEnd;
+use bodyschema::files::touch::{Column, Decimal, Format, Recorded, Separator, TimeColumn, read_recorded};
 use bodyschema::numerics::rng::stream;
 use bodyschema::recording::Recording;
 use bodyschema::settings::{Base, Settings};
@@ -18,11 +19,75 @@ use crate::run::{Steps, Threads};
 /// A recording, T × M; the time between two samples, s, if the file tells it; and what was guessed of the file.
 type Read<'py> = (Bound<'py, PyArray2<f32>>, Option<f64>, Vec<String>);
 
+/// A column of a file.
+#[derive(FromPyObject)]
+enum Place {
+    Number(usize),
+    Name(String),
+}
+
+impl From<Place> for Column {
+    fn from(place: Place) -> Self {
+        match place {
+            Place::Number(number) => Self { number: Some(number), name: None },
+            Place::Name(name) => Self { number: None, name: Some(name) },
+        }
+    }
+}
+
+/// How to read a file.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct Reading {
+    separator: Option<char>,
+    decimal: Option<char>,
+    header: Option<bool>,
+    /// The column of times, if there is one; `None` to guess.
+    time: Option<Vec<Place>>,
+    leave_out: Vec<Place>,
+    array: Option<String>,
+}
+
+impl TryFrom<Reading> for Format {
+    type Error = PyErr;
+
+    fn try_from(reading: Reading) -> PyResult<Self> {
+        let separator = match reading.separator {
+            None => None,
+            Some(',') => Some(Separator::Comma),
+            Some(';') => Some(Separator::Semicolon),
+            Some('\t') => Some(Separator::Tab),
+            Some(' ') => Some(Separator::Blank),
+            Some(other) => return Err(value_error(format!("separator cannot be {other:?}"))),
+        };
+        let decimal = match reading.decimal {
+            None => None,
+            Some('.') => Some(Decimal::Point),
+            Some(',') => Some(Decimal::Comma),
+            Some(other) => return Err(value_error(format!("decimal cannot be {other:?}"))),
+        };
+        let time = match reading.time.map(|columns| columns.into_iter().next()) {
+            None => TimeColumn::Guess,
+            Some(None) => TimeColumn::None,
+            Some(Some(column)) => TimeColumn::Is(column.into()),
+        };
+        Ok(Self {
+            separator,
+            decimal,
+            header: reading.header,
+            time,
+            leave_out: reading.leave_out.into_iter().map(Column::from).collect(),
+            array: reading.array,
+            front_end: FrontEnd::Python,
+        })
+    }
+}
+
 /// Reads a recording as `bodyschema estimate` does: float32, NaN where there is no value.
 #[pyfunction]
-pub(crate) fn read_touch(py: Python<'_>, path: PathBuf, jobs: usize) -> PyResult<Read<'_>> {
-    let threads = Threads::start(jobs)?;
-    let read = move |_: &Steps| touch::read_recorded(&path, &touch::Format::default());
+pub(crate) fn read_touch(py: Python<'_>, path: PathBuf, reading: Reading, jobs: usize) -> PyResult<Read<'_>> {
+    let (threads, format) = (Threads::start(jobs)?, Format::try_from(reading)?);
+    let read = move |_: &Steps| read_recorded(&path, &format);
     let Recorded { tactile, interval, guesses } = threads.run(py, None, read)?.map_err(value_error)?;
     Ok((by_series(py, tactile.samples, tactile.pressures)?, interval, guesses))
 }

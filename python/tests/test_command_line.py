@@ -77,7 +77,7 @@ def test_a_column_of_times_is_said_and_gives_the_interval(tmp_path, moved, found
     np.savetxt(tmp_path / "touch.csv", np.hstack([times, moved.touch]), delimiter=",", header=names, comments="", fmt="%.9g")
     with pytest.warns(bodyschema.RecordingWarning, match="touch.csv: .*time"):
         read = bodyschema.estimate(tmp_path / "touch.csv")
-    assert same(read.parts, found.parts) and abs(read.interval - 0.1) < 1e-9
+    assert same(read.parts, found.parts) and read.interval == 0.1
 
 
 def test_the_tree_over_known_parts(folder, tmp_path, command, moved):
