@@ -39,7 +39,7 @@ use crate::recording::Recording;
 use crate::stages::distance::{Distances, information_metric};
 use crate::stages::joints::{Joints, refine};
 use crate::stages::quantise::{Quantise, quantise};
-use crate::stages::rigid_parts::{MIN_SENSORS, RigidParts, is_signed, rigid_parts, stratified};
+use crate::stages::rigid_parts::{MIN_SENSORS, RigidParts, rigid_parts, stratified};
 use crate::stages::sense::Tactile;
 
 /// Sensors whose distances are computed, spread over all.
@@ -160,12 +160,13 @@ pub fn estimate(
     if recording.sensors.len() < MIN_SENSORS {
         return Err(TooFewSensors { usable: recording.sensors.len(), all: recording.all_sensors() });
     }
-    let (sensors, distances) = distances(&recording.tactile, levels);
+    let Recording { tactile, signed, .. } = recording;
+    let (sensors, distances) = distances(tactile, *signed, levels);
     tick();
-    let parts = rigid_parts(&recording.tactile, &sensors);
+    let parts = rigid_parts(tactile, *signed, &sensors);
     let fit = Fit::new(&parts, recording);
     tick();
-    let (parts, joints) = refine(&recording.tactile, parts, rng);
+    let (parts, joints) = refine(tactile, *signed, parts, rng);
     tick();
     Ok(Estimate { fit, parts, joints, mapped: sensors, distances })
 }
@@ -194,18 +195,17 @@ fn cause(tactile: &Tactile, is_noisy: bool) -> &'static str {
     }
 }
 
-/// Some sensors, spread over all and rising, and their distances.
-pub fn distances(tactile: &Tactile, levels: &Quantise) -> (Vec<usize>, Distances) {
+/// Some sensors, spread over all and rising, and their distances. `signed`: whether negative pressures are signal.
+pub fn distances(tactile: &Tactile, signed: bool, levels: &Quantise) -> (Vec<usize>, Distances) {
     let sensors: Vec<usize> = stratified(tactile.sensors(), MAX_SENSORS).collect();
-    let distances = information_metric(&quantise(&excerpt(tactile, &sensors), levels));
+    let distances = information_metric(&quantise(&excerpt(tactile, signed, &sensors), levels));
     (sensors, distances)
 }
 
 /// Pressures of some sensors at some samples, made positive in the same order: each sensor's minus its smallest negative one. Where
 /// one is missing, the one before: the distances only make a picture.
-fn excerpt(tactile: &Tactile, sensors: &[usize]) -> Tactile {
+fn excerpt(tactile: &Tactile, signed: bool, sensors: &[usize]) -> Tactile {
     let samples: Vec<usize> = stratified(tactile.samples, MAX_SAMPLES).collect();
-    let signed = is_signed(tactile);
     let series: Vec<&[f32]> = tactile.series().collect();
     let own = |&sensor: &usize| {
         let mut last = 0.0;

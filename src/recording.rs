@@ -28,26 +28,37 @@ pub struct Recording {
     pub missing: Missing,
     /// How many sensors have noise.
     pub noisy: usize,
-    /// Whether negative pressures are signal, not noise about 0.
+    /// Whether negative pressures are signal, not noise about 0. All stages go by it.
     pub signed: bool,
 }
 
+/// What a user may say of a recording, so that the data do not tell it.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Cleaning {
+    /// Whether values at the end of a sensor's range are no sign of saturation, and count.
+    pub keep_saturated: bool,
+    /// Whether negative pressures are signal; if not, they count as 0.
+    pub signed: Option<bool>,
+}
+
 impl Recording {
+    /// Cleans a recording of M sensors as the data tell. It is [`Recording::cleaned`] with nothing said.
+    pub fn new(tactile: Tactile) -> Self {
+        Self::cleaned(tactile, Cleaning::default())
+    }
+
     /// Cleans a recording of M sensors: drops samples at which most sensors have no value, then sensors that are dead, constant or
     /// mostly missing, and smooths the noisy ones of the others. It may drop all. Infinite and saturated values count as missing.
-    pub fn new(tactile: Tactile) -> Self {
-        Self::of_usable(usable_with(tactile, false))
-    }
-
-    /// The same, where values at the end of a sensor's range are no sign of saturation, and count.
-    pub fn keeping_saturated(tactile: Tactile) -> Self {
-        Self::of_usable(usable_with(tactile, true))
-    }
-
-    fn of_usable(usable: Usable) -> Self {
-        let Usable { tactile, sensors, dropped, lost_samples, samples, missing } = usable;
+    pub fn cleaned(mut tactile: Tactile, Cleaning { keep_saturated, signed }: Cleaning) -> Self {
+        if signed == Some(false) {
+            // NaN stays.
+            let negative = tactile.pressures.iter_mut().filter(|pressure| **pressure < 0.0);
+            negative.for_each(|pressure| *pressure = 0.0);
+        }
+        let Usable { tactile, sensors, dropped, lost_samples, samples, missing } =
+            usable_with(tactile, keep_saturated);
         let (tactile, noisy) = above_noise(tactile);
-        let signed = is_signed(&tactile);
+        let signed = signed.unwrap_or_else(|| is_signed(&tactile));
         Self { tactile, sensors, dropped, samples, lost_samples, missing, noisy, signed }
     }
 
@@ -88,5 +99,18 @@ mod tests {
         assert_eq!(recording.all_sensors(), 4);
         let truth = Truth::new(vec![7, 8, 8, 9], vec![(8, 7), (9, 8)]);
         assert_eq!(recording.truth(&truth), Truth { labels: vec![7, 9], ..truth });
+    }
+
+    #[test]
+    fn whether_negative_pressures_count_is_said_or_told_by_the_data() {
+        // Of all, 0.4 % and 40 % are below 0.
+        for (below, told) in [(-0.01, false), (-1.6, true)] {
+            let pressures: Vec<f32> = (0..8).map(|t| if t % 2 == 0 { 2.4 } else { below }).collect();
+            let tactile = Tactile { samples: 4, pressures };
+            let of = |signed| Recording::cleaned(tactile.clone(), Cleaning { signed, ..Cleaning::default() });
+            assert_eq!([None, Some(true), Some(false)].map(|signed| of(signed).signed), [told, true, false]);
+            assert_eq!(of(Some(true)).tactile, tactile);
+            assert!(of(Some(false)).tactile.pressures.iter().all(|pressure| *pressure >= 0.0));
+        }
     }
 }

@@ -9,18 +9,19 @@ REVISION: str
 SEED: int
 
 _Tell = Callable[[int], Any] | None
+_Said = tuple[bool | None, bool]
 
 def read_touch(path: str, reading: dict[str, Any], jobs: int) -> tuple[NDArray[np.float32], float | None, list[str]]: ...
 def estimate(
-    touch: NDArray[np.float32] | NDArray[np.float64], unsigned: bool, seed: int, jobs: int, progress: _Tell
+    touch: NDArray[np.float32] | NDArray[np.float64], said: _Said, seed: int, jobs: int, progress: _Tell
 ) -> dict[str, Any]: ...
 def tree(
     touch: NDArray[np.float32] | NDArray[np.float64],
     labels: list[int],
     rank: int | None,
+    said: _Said,
     seed: int,
     jobs: int,
-    progress: _Tell,
 ) -> dict[str, Any]: ...
 def simulate(name: str | None, changes: str, seed: int, jobs: int, progress: _Tell) -> dict[str, Any]: ...
 def play(name: str | None, changes: str, recording: dict[str, Any], jobs: int) -> dict[str, Any]: ...

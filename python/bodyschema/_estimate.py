@@ -11,7 +11,7 @@ import numpy as np
 
 from . import _bodyschema, _picture
 from ._arguments import Progress, RandomState, count_of, jobs_of, labels_of, number_of, progress_of, seed_of
-from ._reading import RecordingWarning, touch_of
+from ._reading import RecordingWarning, said_of, touch_of, warn_of_cleaning
 
 
 @dataclass(frozen=True)
@@ -209,6 +209,7 @@ def estimate(
     interval: Optional[float] = None,
     signed: Optional[bool] = None,
     *,
+    keep_saturated: bool = False,
     force: bool = False,
     random_state: RandomState = None,
     n_jobs: Optional[int] = -1,
@@ -229,7 +230,9 @@ def estimate(
         Time between two samples, s. It only labels the time. By default that of the column of times of a file.
     signed : bool, optional
         Whether negative values count. By default they do if they are more than 1 % of the sum of all absolute values. False takes
-        each negative value for 0. True makes sure that they count.
+        each negative value for 0.
+    keep_saturated : bool, default False
+        Use values at the end of the range of their sensor, which otherwise count as missing.
     force : bool, default False
         Give the tree even if rigid parts do not explain the recording.
     random_state : int, NumPy generator or None
@@ -275,21 +278,15 @@ def estimate(
     """
     if interval is not None and number_of(interval, "interval") <= 0:
         raise ValueError(f"interval must be a time above 0, in s, but is {interval!r}")
-    if signed not in (None, True, False):
-        raise ValueError(f"signed must be True, False or None, but is {signed!r}")
+    said = said_of(signed, keep_saturated)
     seed, jobs = seed_of(random_state), jobs_of(n_jobs)
     array, read_interval = touch_of(touch)
     interval = read_interval if interval is None else interval
     with progress_of(progress, 3, "estimate") as tell:
-        facts = _bodyschema.estimate(array, signed is not None and not signed, seed, jobs, tell)
-    if signed and not facts["signed"]:
-        raise ValueError(
-            "signed is True, but negative values are less than 1 % of the sum of all absolute values; leave it out for sensors that "
-            "feel nothing while they move inward"
-        )
+        facts = _bodyschema.estimate(array, said, seed, jobs, tell)
     verdict, sensors, all_sensors = facts["verdict"], facts["sensors"], array.shape[1]
     fit = Fit(verdict, facts["explained"], facts["cause"])
-    _warn(facts, all_sensors)
+    warn_of_cleaning(facts, all_sensors)
     shows_tree = force or facts["fits"]
     if not facts["fits"]:
         note = "parts and tree mean nothing" if shows_tree else "parts mean nothing, and no tree is given (force=True does)"
@@ -323,6 +320,8 @@ def estimate_tree(
     parts: Any,
     *,
     rank: Optional[int] = None,
+    signed: Optional[bool] = None,
+    keep_saturated: bool = False,
     random_state: RandomState = None,
     n_jobs: Optional[int] = -1,
 ) -> Joints:
@@ -336,7 +335,7 @@ def estimate_tree(
         The part of each sensor, any whole number; −1 leaves a sensor out.
     rank : int, optional
         Rank of the motion subspace of each part, 1 to 6. By default the data choose one for each.
-    random_state, n_jobs
+    signed, keep_saturated, random_state, n_jobs
         As for `estimate`.
 
     Returns
@@ -356,8 +355,9 @@ def estimate_tree(
     seed, jobs = seed_of(random_state), jobs_of(n_jobs)
     array, _ = touch_of(touch)
     labels = labels_of(parts, "parts", -1)
-    facts = _bodyschema.tree(array, labels.tolist(), None if rank is None else count_of(rank, "rank"), seed, jobs, None)
-    _warn(facts, array.shape[1])
+    given = None if rank is None else count_of(rank, "rank")
+    facts = _bodyschema.tree(array, labels.tolist(), given, said_of(signed, keep_saturated), seed, jobs)
+    warn_of_cleaning(facts, array.shape[1])
     return Joints(**_joined(facts, True))
 
 
@@ -368,27 +368,3 @@ def _joined(facts: Mapping[str, Any], shows_tree: bool) -> dict[str, Any]:
     joints["support"] = facts["support"] if shows_tree else np.empty(0)
     joints["dropped"] = dict(facts["dropped"])
     return joints
-
-
-def _warn(facts: Mapping[str, Any], sensors: int) -> None:
-    """Says what cleaning changed."""
-
-    def warn(message: str) -> None:
-        warnings.warn(message, RecordingWarning, stacklevel=4)
-
-    if facts["lost_samples"] > 0:
-        warn(f"{facts['lost_samples']} samples are left out, because most sensors have no value there")
-    if facts["saturated"] > 0:
-        warn(f"{facts['saturated']} values are at the end of the range of their sensor for three samples or more, and count as missing")
-    if facts["infinite"] > 0:
-        warn(f"{facts['infinite']} values are infinite, and count as missing")
-    if facts["missing"] > 0:
-        warn(f"{facts['missing']} values are missing of the sensors that are used; they are not interpolated")
-    if facts["noisy"] > 0:
-        warn(
-            f"{facts['noisy']} of {len(facts['sensors'])} sensors are noisy; they are smoothed, and pressures within the noise count as "
-            "no touch"
-        )
-    if facts["dropped"]:
-        first, fault = facts["dropped"][0]
-        warn(f"{len(facts['dropped'])} of {sensors} sensors are left out (the first, {first}, is {fault}); see dropped")

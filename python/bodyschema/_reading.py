@@ -6,7 +6,7 @@ import errno
 import numbers
 import os
 import warnings
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, Optional, Union
 
 import numpy as np
@@ -128,3 +128,39 @@ def touch_of(touch: Any) -> tuple[np.ndarray, Optional[float]]:
     if array.shape[0] > MONOTONE and array.shape[1] > 0 and bool(np.all(array[1:, 0] > array[:-1, 0])):
         raise ValueError("column 0 of touch rises with every row, as a time does and no sensor: leave it out, touch[:, 1:]")
     return array, None
+
+
+def said_of(signed: Any, keep_saturated: Any) -> tuple[Optional[bool], bool]:
+    """What is said of a recording, so that the data do not tell it."""
+    if signed not in (None, True, False):
+        raise ValueError(f"signed must be True, False or None, but is {signed!r}")
+    if keep_saturated not in (True, False):
+        raise ValueError(f"keep_saturated must be True or False, but is {keep_saturated!r}")
+    return None if signed is None else bool(signed), bool(keep_saturated)
+
+
+def warn_of_cleaning(facts: Mapping[str, Any], sensors: int) -> None:
+    """Says what cleaning changed, at the caller of the caller."""
+
+    def warn(message: str) -> None:
+        warnings.warn(message, RecordingWarning, stacklevel=4)
+
+    if facts["lost_samples"] > 0:
+        warn(f"{facts['lost_samples']} samples are left out, because most sensors have no value there")
+    if facts["saturated"] > 0:
+        warn(
+            f"{facts['saturated']} values are at the end of the range of their sensor for three samples or more, and count as missing; "
+            "keep_saturated=True uses them"
+        )
+    if facts["infinite"] > 0:
+        warn(f"{facts['infinite']} values are infinite, and count as missing")
+    if facts["missing"] > 0:
+        warn(f"{facts['missing']} values are missing of the sensors that are used; they are not interpolated")
+    if facts["noisy"] > 0:
+        warn(
+            f"{facts['noisy']} of {len(facts['sensors'])} sensors are noisy; they are smoothed, and pressures within the noise count as "
+            "no touch"
+        )
+    if facts["dropped"]:
+        first, fault = facts["dropped"][0]
+        warn(f"{len(facts['dropped'])} of {sensors} sensors are left out (the first, {first}, is {fault}); see dropped")

@@ -6,9 +6,10 @@ use bodyschema::estimate::{Estimate, TooFewSensors, Verdict, estimate as estimat
 use bodyschema::files::FrontEnd;
 use bodyschema::files::touch::{Column, Decimal, Format, Recorded, Separator, TimeColumn, read_recorded};
 use bodyschema::numerics::rng::stream;
-use bodyschema::recording::Recording;
+use bodyschema::recording::{Cleaning, Recording};
 use bodyschema::settings::{Base, Settings};
 use bodyschema::stages::joints::{Joints, Pair, joints};
+use bodyschema::stages::sense::Tactile;
 use numpy::{IntoPyArray, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -92,27 +93,30 @@ pub(crate) fn read_touch(py: Python<'_>, path: PathBuf, reading: Reading, jobs: 
     Ok((by_series(py, tactile.samples, tactile.pressures)?, interval, guesses))
 }
 
-/// `bodyschema estimate`. `unsigned` takes negative pressures for 0.
+/// Whether negative values count, if it is said, and whether saturated ones do.
+type Said = (Option<bool>, bool);
+
+/// Cleans a recording as the user says.
+fn cleaned(tactile: Tactile, (signed, keep_saturated): Said) -> Recording {
+    Recording::cleaned(tactile, Cleaning { keep_saturated, signed })
+}
+
+/// `bodyschema estimate`.
 #[pyfunction]
-#[pyo3(signature = (touch, unsigned, seed, jobs, progress))]
+#[pyo3(signature = (touch, said, seed, jobs, progress))]
 pub(crate) fn estimate<'py>(
     py: Python<'py>,
     touch: &Bound<'py, PyAny>,
-    unsigned: bool,
+    said: Said,
     seed: u64,
     jobs: usize,
     progress: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let threads = Threads::start(jobs)?;
-    let mut tactile = arrays::touch(&threads, touch)?;
+    let tactile = arrays::touch(&threads, touch)?;
     let levels = Settings::load_over(Some(Base::ESTIMATE), None).map_err(value_error)?.quantise;
     let work = move |steps: &Steps| {
-        if unsigned {
-            // NaN stays.
-            let negative = tactile.pressures.iter_mut().filter(|pressure| **pressure < 0.0);
-            negative.for_each(|pressure| *pressure = 0.0);
-        }
-        let recording = Recording::new(tactile);
+        let recording = cleaned(tactile, said);
         let rng = &mut stream(seed, 1, "co-motion", 0);
         let found = estimate_of(&recording, &levels, rng, &|| steps.tick())?;
         Ok((recording, found))
@@ -120,7 +124,7 @@ pub(crate) fn estimate<'py>(
     let outcome = threads.run(py, progress, work)?;
     let (recording, found) = outcome.map_err(|error: TooFewSensors| value_error(error))?;
     let facts = PyDict::new(py);
-    cleaned(&facts, &recording)?;
+    became(&facts, &recording)?;
     let Estimate { fit, parts, joints, mapped, distances } = found;
     facts.set_item("verdict", fit.verdict.to_string())?;
     facts.set_item("fits", fit.verdict != Verdict::DoesNotFit)?;
@@ -143,15 +147,15 @@ pub(crate) fn estimate<'py>(
 
 /// `bodyschema tree`: labels of −1 are of no part.
 #[pyfunction]
-#[pyo3(signature = (touch, labels, rank, seed, jobs, progress))]
+#[pyo3(signature = (touch, labels, rank, said, seed, jobs))]
 pub(crate) fn tree<'py>(
     py: Python<'py>,
     touch: &Bound<'py, PyAny>,
     labels: Vec<i64>,
     rank: Option<usize>,
+    said: Said,
     seed: u64,
     jobs: usize,
-    progress: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let threads = Threads::start(jobs)?;
     let tactile = arrays::touch(&threads, touch)?;
@@ -167,22 +171,22 @@ pub(crate) fn tree<'py>(
     }
     let known: Vec<Option<usize>> = labels.into_iter().map(|label| usize::try_from(label).ok()).collect();
     let work = move |_: &Steps| {
-        let recording = Recording::new(tactile);
+        let recording = cleaned(tactile, said);
         let own = recording.of_sensors(&known);
         let feels = own.iter().any(Option::is_some);
         let rng = &mut stream(seed, 1, "co-motion", 0);
-        (feels.then(|| joints(&recording.tactile, &own, rank, rng)), recording)
+        (feels.then(|| joints(&recording.tactile, recording.signed, &own, rank, rng)), recording)
     };
-    let (found, recording) = threads.run(py, progress, work)?;
+    let (found, recording) = threads.run(py, None, work)?;
     let found = found.ok_or_else(|| value_error("no sensor that has a part feels anything"))?;
     let facts = PyDict::new(py);
-    cleaned(&facts, &recording)?;
+    became(&facts, &recording)?;
     joined(&facts, &found)?;
     Ok(facts)
 }
 
 /// What became of sensors and samples.
-fn cleaned(facts: &Bound<'_, PyDict>, recording: &Recording) -> PyResult<()> {
+fn became(facts: &Bound<'_, PyDict>, recording: &Recording) -> PyResult<()> {
     let py = facts.py();
     check_sensors(recording.tactile.samples, recording.all_sensors())?;
     facts.set_item("sensors", whole(recording.sensors.iter().copied()).into_pyarray(py))?;

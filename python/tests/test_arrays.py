@@ -137,7 +137,7 @@ def test_what_does_not_fit_the_memory_is_refused():
     for dtype in [np.float32, np.float64]:
         huge = np.broadcast_to(np.zeros(1, dtype=dtype), (10**11, 100))
         with pytest.raises(MemoryError, match="does not fit the memory"):
-            bodyschema._bodyschema.estimate(huge, False, 1, 1, None)
+            bodyschema._bodyschema.estimate(huge, (None, False), 1, 1, None)
         with pytest.raises(MemoryError, match="does not fit the memory"):
             bodyschema._bodyschema.quantise(huge, "", 1)
     with pytest.raises(MemoryError, match="does not fit the memory"):
@@ -178,7 +178,7 @@ def test_nonsense_never_ends_in_a_mistake_of_ours(samples, sensors):
         ({"interval": 0}, "interval"),
         ({"interval": float("nan")}, "interval"),
         ({"signed": "yes"}, "signed"),
-        ({"signed": True}, "negative values are less than 1 %"),
+        ({"keep_saturated": "yes"}, "keep_saturated"),
         ({"random_state": -1}, "random_state"),
         ({"random_state": 2**64}, "random_state"),
         ({"random_state": "1"}, "random_state"),
@@ -207,6 +207,15 @@ def test_negative_values_count_or_do_not(moved):
     unsigned = bodyschema.estimate(touch, signed=False)
     assert not unsigned.signed
     assert same(unsigned, bodyschema.estimate(np.maximum(touch, 0)))
+    assert same(bodyschema.estimate(touch), bodyschema.estimate(touch, signed=True))
+    # Fewer than the data need to tell it: all stages go by what is said.
+    few = np.where(touch < 0, touch / 1000, touch)
+    told, forced = bodyschema.estimate(few), bodyschema.estimate(few, signed=True)
+    assert (told.signed, forced.signed) == (False, True)
+    assert not same(told.residuals, forced.residuals) and not same(told.distances, forced.distances)
+    joints = [bodyschema.estimate_tree(few, moved.parts, signed=signed) for signed in [None, False, True]]
+    assert same(joints[0], bodyschema.estimate_tree(few, moved.parts)) and not same(joints[0], joints[2])
+    assert same(joints[1], bodyschema.estimate_tree(np.maximum(few, 0), moved.parts))
 
 
 @pytest.mark.parametrize("touch", [np.full((3, 4), -1.0), np.array([[1.0, np.nan]]), np.array([[np.inf]])])

@@ -65,6 +65,35 @@ def test_estimate(folder, tmp_path, command, moved, kind):
     assert found.pair_support.tobytes() == pairs["support"].tobytes()
 
 
+def test_what_is_said_of_a_recording(folder, tmp_path, command, moved):
+    touch = np.minimum(moved.touch, np.quantile(moved.touch[moved.touch > 0], 0.9))[:600]
+    touch[touch == 0] = -1e-6 * np.arange(1, 1 + (touch == 0).sum()) / touch.size
+    np.save(tmp_path / "touch.npy", touch)
+    warned = {}
+    for options, arguments in [
+        ([], {}),
+        (["--keep-saturated"], {"keep_saturated": True}),
+        (["--signed", "yes"], {"signed": True}),
+        (["--signed", "no", "--keep-saturated"], {"signed": False, "keep_saturated": True}),
+    ]:
+        command("estimate", tmp_path / "touch.npy", *options, "--force", "--out", tmp_path / "found")
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            found = bodyschema.estimate(tmp_path / "touch.npy", force=True, **arguments)
+        warned[bool(arguments.get("keep_saturated"))] = any("keep_saturated=True uses them" in str(one.message) for one in caught)
+        summary = json.loads((tmp_path / "found/summary.json").read_text())
+        assert (found.signed, summary["saturated"] == 0) == (summary["signed"], "--keep-saturated" in options)
+        assert found.signed == (arguments.get("signed") is True)
+        rows = table(tmp_path / "found/parts.csv")
+        assert found.residuals[rows["sensor"]].tobytes() == rows["residual"].tobytes()
+        command("tree", tmp_path / "touch.npy", "--parts", folder / "labels.csv", *options, "--out", tmp_path / "joined")
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", bodyschema.RecordingWarning)
+            joints = bodyschema.estimate_tree(touch, moved.parts, **arguments)
+        assert joints.pair_correlation.tobytes() == table(tmp_path / "joined/edges.csv")["correlation"].tobytes()
+    assert warned == {False: True, True: False}
+
+
 def test_a_file_is_read_as_the_command_line_reads_it(folder, tmp_path, moved, found):
     assert same(bodyschema.estimate(folder / "tactile.npy", interval=moved.interval), found)
     np.savetxt(tmp_path / "touch.csv", moved.touch, delimiter=",", header=",".join(["a"] * moved.touch.shape[1]), comments="", fmt="%.9g")

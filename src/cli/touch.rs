@@ -6,9 +6,9 @@ use anyhow::Result;
 use clap::{Args, ValueEnum};
 
 use super::options::seconds;
-use crate::files::{FrontEnd, one_line};
 use crate::files::touch::{Column, Decimal, Format, Recorded, Separator, TimeColumn, read_recorded};
-use crate::recording::Recording;
+use crate::files::{FrontEnd, one_line};
+use crate::recording::{Cleaning, Recording};
 use crate::stages::sense::Tactile;
 
 /// A file of pressures, and how to read it.
@@ -24,6 +24,9 @@ pub(super) struct TouchFile {
     /// Values at the end of a sensor's range count
     #[arg(long, help_heading = HEADING)]
     keep_saturated: bool,
+    /// Whether values below 0 count: yes or no
+    #[arg(long, help_heading = HEADING, value_name = "WORD", hide_possible_values = true)]
+    signed: Option<YesOrNo>,
 }
 
 /// The heading of these options.
@@ -72,6 +75,12 @@ enum YesOrNo {
     No,
 }
 
+impl YesOrNo {
+    fn is_yes(self) -> bool {
+        self == Self::Yes
+    }
+}
+
 /// A recording that was read but not cleaned.
 pub(super) struct Read {
     /// The file, as messages name it.
@@ -79,7 +88,7 @@ pub(super) struct Read {
     pub tactile: Tactile,
     /// Time between two samples, s, if it is known.
     pub interval: Option<f64>,
-    keeps_saturated: bool,
+    cleaning: Cleaning,
 }
 
 impl TouchFile {
@@ -91,7 +100,9 @@ impl TouchFile {
             if path == Path::new("-") { "standard input".to_owned() } else { path.display().to_string() };
         say_guesses(&name, &guesses);
         let interval = self.interval.or(interval);
-        Ok(Read { name, tactile, interval, keeps_saturated: self.keep_saturated })
+        let signed = self.signed.map(YesOrNo::is_yes);
+        let cleaning = Cleaning { keep_saturated: self.keep_saturated, signed };
+        Ok(Read { name, tactile, interval, cleaning })
     }
 }
 
@@ -121,7 +132,7 @@ impl FormatOptions {
         Format {
             separator,
             decimal,
-            header: self.header.map(|own| own == YesOrNo::Yes),
+            header: self.header.map(YesOrNo::is_yes),
             time,
             leave_out: self.leave_out.iter().map(|word| Column::of_word(word)).collect(),
             array: self.array.clone(),
@@ -133,16 +144,15 @@ impl FormatOptions {
 impl Read {
     /// Cleans the recording, and says what that changed.
     pub(super) fn cleaned(self) -> Recording {
-        let Self { name, tactile, keeps_saturated, .. } = self;
-        let recording =
-            if keeps_saturated { Recording::keeping_saturated(tactile) } else { Recording::new(tactile) };
-        cleaning(&recording).iter().for_each(|line| eprintln!("bodyschema: {name}: {line}"));
+        let Self { name, tactile, cleaning, .. } = self;
+        let recording = Recording::cleaned(tactile, cleaning);
+        changes(&recording).iter().for_each(|line| eprintln!("bodyschema: {name}: {line}"));
         recording
     }
 }
 
 /// What cleaning changed, a line each.
-fn cleaning(Recording { tactile, lost_samples, noisy, missing, .. }: &Recording) -> Vec<String> {
+fn changes(Recording { tactile, lost_samples, noisy, missing, .. }: &Recording) -> Vec<String> {
     let mut lines = Vec::new();
     if missing.saturated > 0 {
         lines.push(format!(

@@ -77,7 +77,7 @@ impl Tree {
         prepare_folder(out)?;
         let mut rng = stream(self.seed.unwrap_or(paper().experiment.seed), 1, "co-motion", 0);
         let rank = self.components.map(|k| k as usize);
-        let found = joints(&recording.tactile, &own, rank, &mut rng);
+        let found = joints(&recording.tactile, recording.signed, &own, rank, &mut rng);
         write(out, &found, &labels)?;
         print(&found, &labels)?;
         if let Some(truth) = truth {

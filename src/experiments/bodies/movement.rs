@@ -184,7 +184,7 @@ impl Movement<'_> {
         let tactile = &recording.tactile;
         let (labels, joints) = (&estimated.parts.labels, &estimated.joints);
         let given: Vec<Option<usize>> = truth.labels.iter().copied().map(Some).collect();
-        let tree_of_true_parts = joint_tree(tactile, &given);
+        let tree_of_true_parts = joint_tree(tactile, recording.signed, &given);
         let symbols = quantise(tactile, levels);
         let distances = information_metric(&symbols);
         let [nearest, chow_liu] = peers::trees(labels, &distances, &symbols);

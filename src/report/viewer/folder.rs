@@ -15,6 +15,7 @@ use crate::files::touch::{Format, read_recorded};
 use crate::files::{FileError, npy, read_text};
 use crate::settings::Settings;
 use crate::stages::body_map::BodyMap;
+use crate::stages::rigid_parts::is_signed;
 use crate::stages::sense::Tactile;
 use crate::stages::usable::usable;
 
@@ -200,7 +201,7 @@ fn map(folders: &[&Path], touch: Tactile, settings: &Settings) -> Result<Option<
     if used.sensors.is_empty() {
         return Ok(None);
     }
-    let (mapped, distances) = distances(&used.tactile, &settings.quantise);
+    let (mapped, distances) = distances(&used.tactile, is_signed(&used.tactile), &settings.quantise);
     let mapped: Vec<usize> = mapped.into_iter().map(|at| used.sensors[at]).collect();
     Ok(sketch(&distances, settings.map.of, &mapped, sensors))
 }

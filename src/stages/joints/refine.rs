@@ -10,7 +10,7 @@ use super::assign::{assign, gain};
 use super::tree::Joints;
 use crate::numerics::partition::{named_by_appearance, sizes};
 use crate::stages::rigid_parts::{
-    MotionSubspace, RigidParts, Roots, is_signed, opposite_pairs, similar, stratified, typical_size,
+    MotionSubspace, RigidParts, Roots, opposite_pairs, similar, stratified, typical_size,
 };
 use crate::stages::sense::Tactile;
 
@@ -29,10 +29,15 @@ type Members = BTreeMap<usize, Vec<usize>>;
 /// The parts with each unassigned cluster assigned, and how they are joined.
 ///
 /// A cluster is assigned to the part that the joints tell; if none does, each of its sensors to the part with the smallest
-/// residual. In: M × T pressures, of any sign, and the parts and unassigned clusters of their sensors. Out: parts without
+/// residual. In: M × T pressures, of any sign, whether negative ones are signal (`signed`), and the parts and unassigned clusters of their sensors. Out: parts without
 /// unassigned clusters, named by appearance, and their tree.
-pub(crate) fn refine(tactile: &Tactile, mut parts: RigidParts, rng: &mut impl Rng) -> (RigidParts, Joints) {
-    let mut refinement = Refinement::new(tactile);
+pub(crate) fn refine(
+    tactile: &Tactile,
+    signed: bool,
+    mut parts: RigidParts,
+    rng: &mut impl Rng,
+) -> (RigidParts, Joints) {
+    let mut refinement = Refinement::new(tactile, signed);
     let (mut refined, names, motions) = loop {
         let mut refined = parts.clone();
         let (names, motions) = refinement.assigned(&mut refined);
@@ -91,10 +96,9 @@ struct Refinement<'a> {
 }
 
 impl<'a> Refinement<'a> {
-    fn new(tactile: &'a Tactile) -> Self {
+    fn new(tactile: &'a Tactile, signed: bool) -> Self {
         let series: Vec<&[f32]> = tactile.series().collect();
         let samples: Vec<usize> = stratified(tactile.samples, MAX_SAMPLES).collect();
-        let signed = is_signed(tactile);
         Self { roots: Roots::at(&series, &samples, signed), signed, series, known: BTreeMap::new() }
     }
 

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use super::moments::Moments;
 use crate::numerics::partition::sizes;
-use crate::stages::rigid_parts::{MotionSubspace, is_signed};
+use crate::stages::rigid_parts::MotionSubspace;
 use crate::stages::sense::Tactile;
 use crate::stages::tree::{Edge, prim};
 
@@ -93,7 +93,7 @@ impl Joints {
 
 /// Estimates how given parts are joined, from the pressures on their sensors.
 ///
-/// In: M × T pressures, finite and of any sign, and for each of the M sensors the label of its part, any number, or `None` for a
+/// In: M × T pressures, finite and of any sign; whether negative ones are signal (`signed`), not noise about 0; and for each of the M sensors the label of its part, any number, or `None` for a
 /// sensor to be left out. `rank`, 1 to 6, is the rank of the motion subspace of each part; without it, the data choose one for
 /// each. Out: the tree, and for each pair of parts their correlation and the bootstrap support of an edge between them. The same
 /// input and state of `rng` give the same bytes, whatever the number of threads.
@@ -102,17 +102,18 @@ impl Joints {
 /// If there is not one label for each sensor, `rank` is 0, or T is 0.
 pub fn joints(
     tactile: &Tactile,
+    signed: bool,
     labels: &[Option<usize>],
     rank: Option<usize>,
     rng: &mut impl Rng,
 ) -> Joints {
-    let (parts, motions) = parts_and_motions(tactile, labels, rank);
+    let (parts, motions) = parts_and_motions(tactile, signed, labels, rank);
     Joints::of_motions(&parts, &motions, tactile.samples, rng)
 }
 
 /// The tree of [`joints`] without its support, which takes longest of a short recording.
-pub(crate) fn joint_tree(tactile: &Tactile, labels: &[Option<usize>]) -> Vec<Edge> {
-    let (parts, motions) = parts_and_motions(tactile, labels, None);
+pub(crate) fn joint_tree(tactile: &Tactile, signed: bool, labels: &[Option<usize>]) -> Vec<Edge> {
+    let (parts, motions) = parts_and_motions(tactile, signed, labels, None);
     let moments = Moments::new(&motions, tactile.samples, blocks(tactile.samples));
     labelled(&maximum_spanning_tree(&moments.correlations()), &parts)
 }
@@ -120,11 +121,11 @@ pub(crate) fn joint_tree(tactile: &Tactile, labels: &[Option<usize>]) -> Vec<Edg
 /// The labels of the parts, rising, and the motion of each.
 fn parts_and_motions(
     tactile: &Tactile,
+    signed: bool,
     labels: &[Option<usize>],
     rank: Option<usize>,
 ) -> (Vec<usize>, Vec<MotionSubspace>) {
     assert_eq!(labels.len(), tactile.sensors(), "a part for each sensor");
-    let signed = is_signed(tactile);
     let known: Vec<usize> = labels.iter().copied().flatten().collect();
     let parts: Vec<usize> = sizes(&known).into_keys().collect();
     let series = |part: usize| -> Vec<&[f32]> {

@@ -14,7 +14,7 @@ use super::faces::similar;
 use super::factorisation::MAX_RANK;
 use super::floor::{floors, telling_samples, typical_floor};
 use super::medians::typical_size;
-use super::roots::{Roots, is_signed};
+use super::roots::Roots;
 use super::search::{MIN_SENSORS, Search};
 use super::separation::explaining;
 use super::subspace::{Loadings, MotionSubspace, ROTATION_RANK};
@@ -47,15 +47,15 @@ pub struct RigidParts {
 
 /// Estimates the parts.
 ///
-/// In: M × T pressures, of any sign and NaN where one is missing, of sensors that all change; and `sensors`, at least
+/// In: M × T pressures, of any sign and NaN where one is missing, of sensors that all change; whether negative ones are signal
+/// (`signed`), not noise about 0; and `sensors`, at least
 /// [`MIN_SENSORS`](super::MIN_SENSORS) of them, rising and spread over all. The motions of parts are learned from these; the other
 /// sensors are assigned to the part with the smallest residual. Out: the part of all M sensors. No random numbers are drawn, and
 /// the number of threads changes no bit.
 ///
 /// # Panics
 /// If `sensors` is empty or names a sensor beyond M, or T is 0.
-pub fn rigid_parts(tactile: &Tactile, sensors: &[usize]) -> RigidParts {
-    let signed = is_signed(tactile);
+pub fn rigid_parts(tactile: &Tactile, signed: bool, sensors: &[usize]) -> RigidParts {
     let all: Vec<&[f32]> = tactile.series().collect();
     let series_of = |sensors: &[usize]| sensors.iter().map(|&sensor| all[sensor]).collect::<Vec<&[f32]>>();
     let floors = floors(&all);

@@ -34,7 +34,7 @@ fn many_singles() -> (Tactile, RigidParts) {
 #[test]
 fn every_sensor_is_on_a_part_of_the_tree() {
     let (tactile, parts) = many_singles();
-    let (refined, joints) = refine(&tactile, parts.clone(), &mut stream(1, 1, "co-motion", 0));
+    let (refined, joints) = refine(&tactile, false, parts.clone(), &mut stream(1, 1, "co-motion", 0));
     assert_eq!(joints.ranks.keys().copied().collect::<Vec<_>>(), [0, 1]);
     assert!(refined.labels.iter().all(|label| *label < 2) && refined.unassigned.is_empty());
     assert_eq!(refined.labels[..60], parts.labels[..60]);
@@ -67,7 +67,7 @@ fn small_part(c: impl Fn(usize) -> [f64; 3]) -> (Tactile, RigidParts) {
 #[test]
 fn a_small_cluster_is_a_part_unless_the_joints_need_it_elsewhere() {
     let refined = |(tactile, parts): (Tactile, RigidParts)| {
-        refine(&tactile, parts, &mut stream(1, 1, "co-motion", 0)).0.labels
+        refine(&tactile, false, parts, &mut stream(1, 1, "co-motion", 0)).0.labels
     };
     let sign = |sensor: usize| if sensor.is_multiple_of(2) { 1.0 } else { -1.0 };
     let foot = refined(small_part(|sensor| [sign(sensor), sensor as f64 / 6.0 - 0.4, 0.0]));
@@ -86,7 +86,7 @@ fn a_sensor_whose_next_part_is_spurious_is_assigned_to_the_one_after() {
     parts.residuals.push(0.0);
     parts.alternatives.push(vec![(3, 0.1), (2, 0.12), (0, 0.9)]);
     parts.unassigned.push(4);
-    let (refined, _) = refine(&tactile, parts, &mut stream(1, 1, "co-motion", 0));
+    let (refined, _) = refine(&tactile, false, parts, &mut stream(1, 1, "co-motion", 0));
     assert_eq!((refined.labels[60..].to_vec(), refined.residuals[66]), (vec![1, 1, 1, 1, 1, 1, 2], 0.12));
 }
 
@@ -94,7 +94,7 @@ fn a_sensor_whose_next_part_is_spurious_is_assigned_to_the_one_after() {
 fn unassigned_clusters_alone_are_parts() {
     let (tactile, mut parts) = many_singles();
     parts.unassigned = (0..=*parts.labels.iter().max().unwrap()).collect();
-    let (refined, joints) = refine(&tactile, parts, &mut stream(1, 1, "co-motion", 0));
+    let (refined, joints) = refine(&tactile, false, parts, &mut stream(1, 1, "co-motion", 0));
     assert_eq!(joints.tree.len() + 1, joints.ranks.len());
     assert!(refined.labels.iter().all(|label| joints.ranks.contains_key(label)));
 }
