@@ -55,7 +55,7 @@ def jobs_of(n_jobs: Optional[int]) -> int:
 
 def count_of(value: Any, name: str, least: int = 1) -> int:
     """A whole number of at least `least`."""
-    if not isinstance(value, numbers.Integral) or isinstance(value, bool) or not least <= value < 2**31:
+    if not isinstance(value, numbers.Integral) or isinstance(value, bool) or not least <= int(value) < 2**31:
         raise ValueError(f"{name} must be a whole number of at least {least}, but is {value!r}")
     return int(value)
 

@@ -30,8 +30,9 @@ class _Clustering(ClusterMixin, BaseEstimator):
         try:
             from sklearn.utils.validation import validate_data
         except ImportError:  # before scikit-learn 1.6
-            return self._validate_data(X, dtype=np.float64, ensure_min_samples=2)
-        return validate_data(self, X, dtype=np.float64, ensure_min_samples=2)
+            validate_data = type(self)._validate_data
+        points: np.ndarray = validate_data(self, X, dtype=np.float64, ensure_min_samples=2)
+        return points
 
 
 class _Mixture(_Clustering):
