@@ -12,7 +12,7 @@ pub enum FrontEnd {
 
 impl FrontEnd {
     /// The first on the command line, the second in Python.
-    pub fn either<'a>(self, [option, argument]: [&'a str; 2]) -> &'a str {
+    pub fn either(self, [option, argument]: [&str; 2]) -> &str {
         match self {
             Self::CommandLine => option,
             Self::Python => argument,
