@@ -23,7 +23,7 @@ pub fn entries(folder: &str) -> Vec<PathBuf> {
     paths
 }
 
-/// The pages in Markdown that a reader comes to.; generated ones stand in folders of `docs/shown`.
+/// The pages in Markdown that a reader comes to; generated ones stand in folders of `docs/shown`.
 pub fn pages() -> Vec<PathBuf> {
     let named = [
         "README.md",
@@ -32,10 +32,12 @@ pub fn pages() -> Vec<PathBuf> {
         "tests/README.md",
         "benches/README.md",
         "python/README.md",
+        "python/examples/README.md",
         "docs/shown/claims.md",
     ];
     let docs = entries("docs")
         .into_iter()
+        .chain(entries("docs/shown/examples"))
         .filter(|path| path.extension().is_some_and(|extension| extension == "md"));
     let shown =
         entries("docs/shown").into_iter().map(|path| path.join("README.md")).filter(|path| path.is_file());
