@@ -8,8 +8,8 @@ Names of topics may follow.
 
     python own_robot.py recording /skin/left /skin/right
 
-Without a recording, a simulated body stands in for the robot, and is recorded in a bag. ROS need not be installed:
-`pip install rosbags` is enough.
+Without a recording, a simulated body stands in for the robot, and is recorded in a bag. ROS need not be installed: the package `rosbags`
+reads and writes bags without it.
 """
 
 # %%

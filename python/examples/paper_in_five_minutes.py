@@ -26,8 +26,8 @@ print(f"{samples} samples of {sensors} sensors; {100 * (moved.touch == 0).mean()
 # %% [markdown]
 # ## From pressures to distances
 #
-# Pressures become eight symbols. The picture shows two minutes of them. Sensors of one part are next to each other: they face
-# different ways, but their symbols change at the same times.
+# Pressures become eight symbols. The picture shows two minutes of them; sensors of one part are next to each other. Movements begin every
+# 5 s, and the whole body feels them. What differs between parts is finer, and distances measure it.
 
 # %%
 symbols = bodyschema.quantise(moved.touch, levels=8)
