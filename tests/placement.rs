@@ -84,7 +84,10 @@ fn mistakes_in_the_sites_of_sensors_are_named_before_anything_is_written() {
     let fewer = rest.trim_end().rsplit_once('\n').unwrap().0;
     for (sites, expected) in [
         (fewer.to_owned(), "fewer.csv: has 199 sensors, but the recording has 200"),
-        (format!("{head}\n0,0,0,0,0,0\n{rows}"), "fewer.csv: line 2: the normal of sensor 0 has length 0"),
+        (
+            format!("{head}\n0,0,0,0,0,0\n{rows}"),
+            "fewer.csv: line 2: the normal of sensor 0 has no direction",
+        ),
         (rest.replace("nx", "up"), "missing field `normal_x`"),
     ] {
         folder.write("fewer.csv", sites);

@@ -20,6 +20,7 @@ from ._bodies import BodyWarning, import_body
 from ._bodyschema import BODIES, REVISION, SEED
 from ._estimate import Estimate, Fit, Joints, estimate, estimate_tree
 from ._reading import RecordingWarning, read_touch
+from ._placement import Placement, place_joints
 from ._schema import Posterior, dpgmm, dpgmm_lj
 from ._simulate import Simulation, simulate
 from ._stages import Score, body_map, information_metric, quantise, score
@@ -35,6 +36,7 @@ __all__ = [
     "Estimate",
     "Fit",
     "Joints",
+    "Placement",
     "Posterior",
     "REVISION",
     "RecordingWarning",
@@ -48,6 +50,7 @@ __all__ = [
     "estimate_tree",
     "import_body",
     "information_metric",
+    "place_joints",
     "quantise",
     "read_touch",
     "score",

@@ -27,6 +27,10 @@ class Simulation:
         The true part of each sensor.
     tree : ndarray of shape (K − 1, 2), int64
         The true joints, as (child, parent).
+    positions, normals : ndarray of shape (M, 3), float64
+        Position of each sensor, m, and its outward unit normal, in the frame of its solid.
+    solids : ndarray of shape (M,), int64
+        The solid of each sensor. Solids that are fixed to each other are one part.
     names : list of str or None
         The names of the parts; None for the body of the settings.
     interval : float
@@ -38,6 +42,9 @@ class Simulation:
     touch: np.ndarray
     parts: np.ndarray
     tree: np.ndarray
+    positions: np.ndarray
+    normals: np.ndarray
+    solids: np.ndarray
     names: Optional[list[str]]
     interval: float
     seed: Optional[int]
@@ -147,7 +154,8 @@ def simulate(
 
 
 def _simulation(facts: Mapping[str, Any], seed: Optional[int]) -> Simulation:
-    return Simulation(facts["touch"], facts["labels"], facts["tree"], facts["names"], facts["interval"], seed)
+    sites = (facts["positions"], facts["normals"], facts["solids"])
+    return Simulation(facts["touch"], facts["labels"], facts["tree"], *sites, facts["names"], facts["interval"], seed)
 
 
 def _body(body: Union[None, str, os.PathLike[str]]) -> Optional[str]:

@@ -7,6 +7,7 @@
 mod arrays;
 mod cluster;
 mod estimate;
+mod placement;
 mod run;
 mod simulate;
 mod stages;
@@ -21,6 +22,8 @@ mod _bodyschema {
     use super::cluster::{cluster, infer};
     #[pymodule_export]
     use super::estimate::{estimate, read_touch, tree};
+    #[pymodule_export]
+    use super::placement::place;
     #[pymodule_export]
     use super::simulate::{import_body, play, simulate};
     #[pymodule_export]

@@ -8,7 +8,7 @@ use bodyschema::files::{FileError, FrontEnd};
 use bodyschema::movement::{Played, Playing, move_as_recorded};
 use bodyschema::numerics::rng::stream;
 use bodyschema::settings::Settings;
-use bodyschema::stages::agent::Agent;
+use bodyschema::stages::agent::{Agent, Site};
 use bodyschema::stages::sense::{Tactile, sense};
 use bodyschema::stages::simulate::{Unstable, simulate as move_body};
 use bodyschema::stages::tree::Truth;
@@ -16,7 +16,7 @@ use numpy::IntoPyArray;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::arrays::{by_series, edges, value_error, whole};
+use crate::arrays::{by_rows, by_series, edges, value_error, whole};
 use crate::run::{Steps, Threads};
 
 /// The bodies that come with the package.
@@ -62,7 +62,7 @@ pub(crate) fn simulate<'py>(
     let names = body.as_ref().map(NamedBody::rigid_names);
     let agent = body.map_or_else(|| Agent::new(&settings.agent, &settings.skin), |body| body.agent);
     settings.check_times(agent.sites.len()).map_err(value_error)?;
-    let (truth, interval) = (agent.truth(), settings.sense.interval);
+    let (truth, interval, sites) = (agent.truth(), settings.sense.interval, agent.sites.clone());
     let work = move |steps: &Steps| {
         let mut rng = stream(seed, 1, "motion", 0);
         let Settings { motion, physics, sense: settings, .. } = &settings;
@@ -73,6 +73,7 @@ pub(crate) fn simulate<'py>(
     let outcome = Threads::start(jobs)?.run(py, progress, work)?;
     let (tactile, resolution) = outcome.map_err(|error: Unstable| value_error(error))?;
     let facts = moved(py, tactile, truth, names, interval)?;
+    sites_of(&facts, &sites)?;
     facts.set_item("resolved", resolution.is_resolved())?;
     facts.set_item("resolution", resolution.in_words("this movement"))?;
     Ok(facts)
@@ -121,9 +122,18 @@ pub(crate) fn play<'py>(
     let (tactile, played) = outcome.map_err(|error: FileError| value_error(error))?;
     let Played { body, interval, notes, cut, .. } = played;
     let facts = moved(py, tactile, body.agent.truth(), Some(body.rigid_names()), interval)?;
+    sites_of(&facts, &body.agent.sites)?;
     facts.set_item("notes", notes)?;
     facts.set_item("cut", cut)?;
     Ok(facts)
+}
+
+/// Where the sensors are, in the frames of their solids.
+fn sites_of(facts: &Bound<'_, PyDict>, sites: &[Site]) -> PyResult<()> {
+    let py = facts.py();
+    facts.set_item("positions", by_rows(py, 3, sites.iter().flat_map(|site| site.position).collect())?)?;
+    facts.set_item("normals", by_rows(py, 3, sites.iter().flat_map(|site| site.normal).collect())?)?;
+    facts.set_item("solids", whole(sites.iter().map(|site| site.part)).into_pyarray(py))
 }
 
 /// What a body felt, and the truth.

@@ -13,10 +13,8 @@ use crate::files::urdf::urdf;
 use crate::files::write_text;
 use crate::recording::Recording;
 use crate::stages::agent::Site;
-use crate::stages::placement::{JointPlace, Placement, place};
+use crate::stages::placement::{JointPlace, place};
 
-/// Share that a rigid motion of the given sites must explain of what a part feels: otherwise the sites are likely to be wrong.
-const EXPLAINED: f64 = 0.9;
 /// The files that [`write`] writes.
 const FILES: [&str; 2] = ["body.urdf", "places.csv"];
 
@@ -101,11 +99,9 @@ pub(super) fn write(
     };
     let Recording { tactile, signed, .. } = recording;
     let placement = place(tactile, *signed, &found.parts.labels, &found.joints.tree, sites);
-    let notes = notes(&placement, recording);
+    let notes = placement.notes(&recording.sensors);
     write_rows_of(&out.join("places.csv"), &COLUMNS, placement.joints.iter().map(Row::new))?;
-    let head =
-        ["Estimated by bodyschema. A box holds the sensors of a part; masses are not known.".to_owned()];
-    write_text(&out.join("body.urdf"), &urdf(&placement, &[&head[..], &notes].concat()))?;
+    write_text(&out.join("body.urdf"), &urdf(&placement, &notes))?;
     let known = placement.joints.iter().filter(|joint| joint.fit.is_some()).count();
     let summary = format!(
         "body.urdf: {} boxes; the place of {known} of {} joints is known from touch (places.csv)",
@@ -113,35 +109,4 @@ pub(super) fn write(
         placement.joints.len()
     );
     Ok([vec![summary], notes].concat())
-}
-
-/// What is to be known about the places, a line each.
-fn notes(placement: &Placement, recording: &Recording) -> Vec<String> {
-    let mut notes = Vec::new();
-    for part in &placement.parts {
-        if part.explained < EXPLAINED {
-            notes.push(format!(
-                "part {}: a rigid motion of the given positions and normals explains {:.0} % of what its sensors feel; are rows in the \
-                 order of the sensors, and do all normals point out of the surface?",
-                part.part,
-                100.0 * part.explained.max(0.0)
-            ));
-        }
-        if !part.left_out.is_empty() {
-            let first = recording.sensors[part.left_out[0]];
-            notes.push(format!(
-                "part {}: {} of its sensors are left out, for they are on another solid than most of it (the first, {first})",
-                part.part,
-                part.left_out.len()
-            ));
-        }
-    }
-    for joint in placement.joints.iter().filter(|joint| joint.fit.is_none()) {
-        notes.push(format!(
-            "parts {} and {}: touch does not tell the place of their joint, since no point has the same speed in both; \
-             places.csv has a guess",
-            joint.child, joint.parent
-        ));
-    }
-    notes
 }

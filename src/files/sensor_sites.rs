@@ -79,18 +79,11 @@ pub fn read_sites(path: &Path) -> Result<Vec<Site>, FileError> {
         if let Some((name, number)) = numbers.iter().find(|(_, number)| !number.is_finite()) {
             return wrong(format!("{name} is {number}, but must be a finite number"));
         }
-        let [x, y, z] = [row.normal_x, row.normal_y, row.normal_z];
-        let length = x.hypot(y).hypot(z);
-        if length <= 0.0 || !length.is_finite() {
-            return wrong(format!(
-                "the normal of sensor {at} has length {length}; it must point out of the surface"
-            ));
-        }
-        Ok(Site {
-            part: row.solid.unwrap_or(0),
-            position: [row.x_m, row.y_m, row.z_m],
-            normal: [x / length, y / length, z / length],
-        })
+        let (position, normal) = ([row.x_m, row.y_m, row.z_m], [row.normal_x, row.normal_y, row.normal_z]);
+        Site::facing(row.solid.unwrap_or(0), position, normal).map_or_else(
+            || wrong(format!("the normal of sensor {at} has no direction; it must point out of the surface")),
+            Ok,
+        )
     };
     rows.into_iter().enumerate().map(site).collect()
 }
@@ -119,7 +112,7 @@ mod tests {
         for (rows, expected) in [
             ("1,0,0,1,0,0", "line 2: sensor 1 is where sensor 0 should be"),
             ("0,0,0,1,0,0\n1,inf,0,1,0,0", "line 3: x_m is inf"),
-            ("0,0,0,0,0,0", "line 2: the normal of sensor 0 has length 0"),
+            ("0,0,0,0,0,0", "line 2: the normal of sensor 0 has no direction"),
             ("0,0,0,1e300,1e300,1e300", ""),
             ("0,a,0,1,0,0", "line 2: "),
         ] {

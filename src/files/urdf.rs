@@ -12,8 +12,9 @@ use crate::stages::placement::{JointPlace, Placement};
 /// The robot. `notes` become comments at its head.
 pub fn urdf(placement: &Placement, notes: &[String]) -> String {
     let mut text = "<?xml version=\"1.0\"?>\n".to_owned();
+    let head = "Estimated by bodyschema. A box holds the sensors of a part; masses are not known.".to_owned();
     // Two hyphens would end a comment.
-    for note in notes {
+    for note in std::iter::once(&head).chain(notes) {
         add(&mut text, format_args!("<!-- {} -->\n", note.replace("--", "- -")));
     }
     text += "<robot name=\"estimated\">\n";

@@ -100,6 +100,16 @@ pub struct Site {
     pub normal: Vector3,
 }
 
+impl Site {
+    /// With a normal that has this direction; `None` if it is 0 or not finite.
+    pub fn facing(part: usize, position: Vector3, direction: Vector3) -> Option<Self> {
+        let [x, y, z] = direction;
+        let length = x.hypot(y).hypot(z);
+        let normal = direction.map(|along| along / length);
+        (length > 0.0 && length.is_finite()).then_some(Self { part, position, normal })
+    }
+}
+
 /// The body and its skin.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Agent {

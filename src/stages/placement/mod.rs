@@ -12,6 +12,7 @@
 mod boxes;
 mod joint;
 mod motion;
+mod notes;
 mod place;
 
 pub use self::boxes::OrientedBox;
