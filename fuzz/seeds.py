@@ -72,6 +72,13 @@ for name, content in [
 ]:
     put("touch", name, b"\0" + content)
 
+# Twelve sensors, one series after the other: on two parts that move apart, and noise.
+speeds = np.concatenate([rng.normal(size=(6, 3)) @ rng.normal(size=(3, 40)) for part in range(2)])
+put("recording", "parts", b"\0" + (np.maximum(speeds, 0) ** 2).astype("<f4").tobytes())
+put("recording", "signed", b"\0" + speeds.astype("<f4").tobytes())
+put("recording", "gaps", b"\0" + np.where(rng.random(speeds.shape) < 0.1, np.nan, speeds).astype("<f4").tobytes())
+put("recording", "more", b"\x08" + rng.exponential(size=(20, 24)).astype("<f4").tobytes())
+
 LABELS, TREE = b"sensor,part\n0,0\n1,0\n2,1\n3,1\n", b"child,parent\n1,0\n"
 for name, tables in [("good", LABELS + b"\0" + TREE), ("cycle", LABELS + b"\0" + TREE + b"0,1\n"),
                      ("twin", LABELS + b"3,0\n\0" + TREE), ("loop", LABELS + b"\0child,parent\n0,0\n"),

@@ -6,7 +6,7 @@ set -euo pipefail
 root=$(CDPATH= cd -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")/.." && pwd)
 seconds=${1:-60}
 targets=("${@:2}")
-[ "${#targets[@]}" -gt 0 ] || targets=(npy touch tables settings plot verify body bvh mesh)
+[ "${#targets[@]}" -gt 0 ] || targets=(npy touch recording tables settings plot verify body bvh mesh)
 
 "$root/reproduce/install.sh"
 cargo fuzz --version >/dev/null 2>&1 || {
@@ -16,7 +16,8 @@ cargo fuzz --version >/dev/null 2>&1 || {
 # Sanitizers are for nightly compilers only, unless the compiler takes itself for one.
 export RUSTC_BOOTSTRAP=1
 
-files=$(mktemp -d)
+# In memory, where there is room: each input becomes a file.
+files=$(mktemp -d -p /dev/shm 2>/dev/null || mktemp -d)
 trap 'rm -rf "$files"' EXIT
 cd "$root"
 for target in "${targets[@]}"; do
