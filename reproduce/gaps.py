@@ -143,7 +143,7 @@ def page(rows):
         "[gaps.csv](gaps.csv) has each recording.",
         "",
         f"Bodies: {', '.join(BODIES)}; {len(SEEDS)} simulations of each (seeds {SEEDS[0]} to {SEEDS[-1]}), 10,000 samples, joints locked "
-        f"with probability 0.9, no noise but where it is named; revision {', '.join(sorted({row['revision'] for row in rows}))}. In brackets after a count: its 95 % "
+        f"with probability 0.9, no noise but where it is named; revision {', '.join(sorted({row['revision'][:7] for row in rows}))}. In brackets after a count: its 95 % "
         "interval (Wilson).",
         "",
         "| gaps | values missing | sensors used | mean adjusted Rand index (lowest) | parts right | tree right |",
