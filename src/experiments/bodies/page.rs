@@ -220,8 +220,8 @@ fn about(design: &Design, rows: &[Row]) -> String {
          The committed study is not of the default configuration. Its design, \
          [bodies.toml](../../../reproduce/bodies.toml), moves as today's default does (`reproduce/paper.toml` as of \
          revision d8a6986, with two-way fluid coupling). Three things differ: a time step of 0.02 s, eight levels of \
-         its own for each sensor, and skins that cover the ends of the parts. Its simulations are of revisions 363b89f \
-         (1 to 6), 0e800e6 (7 to 9) and e0bd4f7 (10).\n\n\
+         its own for each sensor, and skins that cover the ends of the parts. `reproduce/seeds.toml` says which revision \
+         it ran with.\n\n\
          {} bodies; simulations of each {each}at each p: {}; seed {}; chains of each mixture: {}. {resolved} \
          `reproduce/bodies.sh` makes this page; each recording is a row of [recordings.csv](recordings.csv), each edge \
          of [edges.csv](edges.csv). How it works: [estimate.md](../../estimate.md).",
