@@ -4,7 +4,7 @@
 Each script of python/examples becomes a notebook, which is executed, and then a page of docs/shown/examples with its output and pictures.
 Of the paper's example the notebook is kept, too. With --write, pages and notebook are written; otherwise they are compared with the
 committed ones. On a machine of the same kind, all bytes must be the same. On another one, last digits of a body map differ, and with them
-posterior samples: there only the text is compared, and that everything runs. Takes about a minute on two cores.
+posterior samples: there only the text is compared, and that everything runs. Takes about two minutes on two cores.
 
 Needs the package and what python/requirements.txt names; reproduce/examples.sh installs both. Status: 0 the same or written, 1 an
 example fails or its page is another one.

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Executes the examples of the Python package, and compares their pages (docs/shown/examples, and the notebook in python/examples) with the
 # committed ones. With --write it writes them instead. Builds the package in an environment of its own in target/ first. Needs Python 3.11
-# with venv, Rust, and a network for pip the first time. Takes about a minute once built, on two cores. Status: 0 the same or written,
+# with venv, Rust, and a network for pip the first time. Takes about two minutes once built, on two cores. Status: 0 the same or written,
 # 1 an example fails or its page is another one, 2 on an error.
 set -euo pipefail
 root=$(CDPATH= cd -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")/.." && pwd)

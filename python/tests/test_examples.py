@@ -5,6 +5,7 @@ Without a file of one's own, reproduce/examples.py executes them: .ci/run compar
 
 import importlib.util
 import runpy
+import subprocess
 import sys
 from pathlib import Path
 
@@ -66,14 +67,19 @@ def test_one_s_own_robot(monkeypatch, capsys, tmp_path):
 @pytest.mark.filterwarnings("ignore::UserWarning")
 def test_another_walk(monkeypatch, capsys):
     pytest.importorskip("matplotlib")
-    moved = run("recorded_walk.py", monkeypatch, ROOT / "tests/data/movement/arms.bvh")["moved"]
+    moved = run("felt_walk.py", monkeypatch, ROOT / "tests/data/movement/arms.bvh")["moved"]
     out = capsys.readouterr().out
     assert f"100 samples of {len(moved.parts)} sensors, 2.0 s" in out and "adjusted Rand index" in out
 
 
+def test_the_walk_is_the_one_that_is_made(tmp_path):
+    subprocess.run([sys.executable, ROOT / "reproduce/walk.py", tmp_path / "walk.bvh"], check=True)
+    assert (tmp_path / "walk.bvh").read_bytes() == (EXAMPLES / "walk.bvh").read_bytes()
+
+
 def test_every_example_has_a_page():
     names = sorted(path.stem for path in EXAMPLES.glob("*.py"))
-    assert names == ["own_robot", "paper_in_five_minutes", "recorded_walk"]
+    assert names == ["felt_walk", "own_robot", "paper_in_five_minutes"]
     assert sorted(path.stem for path in (ROOT / "docs/shown/examples").glob("*.md")) == names
 
 
