@@ -298,6 +298,7 @@ fn what_does_not_fit_is_said_in_one_line() {
         ("empty", "empty: has no tactile.npy or tactile.csv"),
         ("own/tree.csv", "own/tree.csv: this is not well-formed XML"),
         ("short.toml --estimate found", "short.toml: --tactile and --estimate are for a folder"),
+        ("short.toml --out short.toml", "short.toml: is the input file; give another --out"),
         ("absent --tactile body/tactile.npy", "absent: no such folder"),
         ("body --tactile absent.npy", "absent.npy: no such file"),
         ("body --estimate fewer", "fewer/summary.json: is of 2 sensors, but the pressures are of 840"),

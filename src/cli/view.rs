@@ -76,6 +76,8 @@ impl View {
             "{}: --tactile and --estimate are for a folder; leave them out for the file of a body",
             path.display()
         );
+        let is_input = matches!((path.canonicalize(), out.canonicalize()), (Ok(a), Ok(b)) if a == b);
+        ensure!(!is_input, "{}: is the input file; give another --out", out.display());
         let is_body = path.extension().is_some_and(|extension| extension == "toml");
         let (body, surfaces, notes) = if is_body {
             (read_body(path)?, Vec::new(), Vec::new())
