@@ -48,14 +48,14 @@ print(f"{samples} samples of {sensors} sensors, {samples * moved.interval:.1f} s
 print(f"{np.count_nonzero(times_felt == 0)} sensors feel nothing")
 
 # %% [markdown]
-# The picture shows the swing of legs and arms, and the even speed of the trunk. The person walks forward: sensors at the back of trunk
-# and thighs hardly ever move backward, and many of them feel nothing. This walk tells nothing of them.
+# The picture of the first ten seconds shows the swing of legs and arms, and the even speed of the trunk. The person walks forward: sensors
+# at the back of trunk and thighs hardly ever move backward, and many of them feel nothing. This walk tells nothing of them.
 
 # %%
 figure, axes = plt.subplots(figsize=(7, 4.5), layout="constrained")
-picture = axes.imshow(
-    np.sqrt(moved.touch[::4].T), aspect="auto", cmap="magma", interpolation="nearest", extent=[0, samples * moved.interval, sensors, 0]
-)
+begin = moved.touch[: round(10 / moved.interval)]
+extent = [0, len(begin) * moved.interval, sensors, 0]
+picture = axes.imshow(np.sqrt(begin.T), aspect="auto", cmap="magma", interpolation="nearest", extent=extent)
 bones, first = np.unique(moved.parts, return_index=True)
 order = np.argsort(first)
 axes.set(xlabel="time (s)", title="What the skin of a walking person feels")
@@ -119,7 +119,8 @@ figure, axes = plt.subplots(figsize=(7, 3.5), layout="constrained")
 for some, marker, label in [(right, "o", "right part"), (wrong, "x", "wrong part")]:
     axes.scatter(found.parts[some], np.maximum(found.residuals[some], 1e-14), s=14, marker=marker, label=label)
 axes.set(yscale="log", ylabel="residual", title="Residual of each sensor, by estimated part")
-names = [moved.names[bone_of[part]].replace(" + ", " +\n") for part in found.labels]
+# Of several bones of one joint, such as Hips and Hips/2, the first is enough here.
+names = [" +\n".join(name for name in moved.names[bone_of[part]].split(" + ") if "/" not in name) for part in found.labels]
 axes.set_xticks(found.labels, names, rotation=45, ha="right", fontsize="small")
 axes.legend()
 plt.show()
