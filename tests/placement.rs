@@ -51,7 +51,7 @@ fn joints_are_placed_by_sensors_at_rest_and_the_description_is_read_back() {
         let found = ["x", "y", "z"].map(|axis| place(&format!("parent_{axis}_m")));
         let off = |anchor: &[f64; 3]| (0..3).map(|at| (anchor[at] - found[at]).powi(2)).sum::<f64>().sqrt();
         let nearest = anchors.iter().map(off).fold(f64::INFINITY, f64::min);
-        // Three standard errors would be exceeded once in some hundred times if errors were Gaussian.
+        // Errors are not only random ones: the three standard errors of Gaussian ones are exceeded.
         assert!(nearest < 0.03 && nearest < 4.0 * place("standard_error_m"), "{found:?}: {nearest}");
     }
     let said = folder.run("body import found/body.urdf --out back.toml");
@@ -59,6 +59,15 @@ fn joints_are_placed_by_sensors_at_rest_and_the_description_is_read_back() {
     let [back, star] = [&folder.at("back.toml"), Path::new(STAR)].map(|file| read_body(file).unwrap().agent);
     let lengths = |agent: &bodyschema::stages::agent::Agent| agent.joints.len();
     assert_eq!(lengths(&back), lengths(&star));
+
+    // Files of others with these names stay, and are not overwritten.
+    folder.write("own/body.urdf", "<robot/>");
+    folder.succeed("estimate star/tactile.npy --out own");
+    folder.refuse(
+        "estimate star/tactile.npy --sensors rest.csv --out own",
+        "own/body.urdf: is not one that `estimate` wrote",
+    );
+    assert_eq!(folder.text("own/body.urdf"), "<robot/>");
 
     // Without sites, those of before are gone.
     folder.succeed("estimate star/tactile.npy --out found");

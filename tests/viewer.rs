@@ -296,8 +296,8 @@ fn what_does_not_fit_is_said_in_one_line() {
     for (arguments, expected) in [
         ("absent", "absent: no such folder"),
         ("empty", "empty: has no tactile.npy or tactile.csv"),
-        ("own/tree.csv", "own/tree.csv: this is not well-formed XML"),
-        ("short.toml --estimate found", "short.toml: --tactile and --estimate are for a folder"),
+        ("own/tree.csv", "own/tree.csv: is a table or a recording, and not a body"),
+        ("short.toml --estimate found", "short.toml: --tactile, --estimate and --settings are for a folder"),
         ("short.toml --out short.toml", "short.toml: is the input file; give another --out"),
         ("absent --tactile body/tactile.npy", "absent: no such folder"),
         ("body --tactile absent.npy", "absent.npy: no such file"),

@@ -29,7 +29,8 @@ def place(
     tree: list[tuple[int, int]],
     sites: list[tuple[list[float], list[float]]],
     frames: list[int],
-    signed: bool,
+    signed: bool | None,
+    keep_saturated: bool,
     jobs: int,
 ) -> dict[str, Any]: ...
 def simulate(name: str | None, changes: str, seed: int, jobs: int, progress: _Tell) -> dict[str, Any]: ...

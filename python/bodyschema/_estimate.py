@@ -129,6 +129,10 @@ class Estimate(Joints):
         How many sensors are noisy, and were smoothed.
     signed : bool
         Whether negative values count.
+    given_signed : bool or None
+        What `estimate` was told of negative values.
+    keep_saturated : bool
+        Whether values at the end of a sensor's range count.
     interval : float or None
         Time between two samples, s.
     seed : int
@@ -149,6 +153,8 @@ class Estimate(Joints):
     samples: np.ndarray
     noisy: int
     signed: bool
+    given_signed: Optional[bool]
+    keep_saturated: bool
     interval: Optional[float]
     seed: int
     mapped: np.ndarray
@@ -307,6 +313,8 @@ def estimate(
         samples=facts["samples"],
         noisy=facts["noisy"],
         signed=facts["signed"],
+        given_signed=None if signed is None else bool(signed),
+        keep_saturated=keep_saturated,
         interval=None if interval is None else float(interval),
         seed=seed,
         mapped=facts["mapped"],

@@ -41,9 +41,11 @@ class Placement:
     joint_rotations : ndarray of shape (K − 1, 3, 3), float64
         The rotation from the child's frame to the parent's: none if all sensors are in one frame, at rest.
     standard_error : ndarray of shape (K − 1,), float64
-        Standard error of each place, by the jackknife over ten blocks of time; NaN where it is not known.
+        Standard error of each place, by the jackknife over ten blocks of time, of random errors only; in different frames the larger of
+        both. NaN where the place is not known.
     mismatch : ndarray of shape (K − 1,), float64
-        How much the speed of a joint differs between its two parts: mean square of the difference, as a share of both mean squares.
+        How much the speed of a joint differs between its two parts: mean square of the difference, as a share of both mean squares;
+        NaN where both motions are known at too few samples.
     notes : list of str
         What is to be known about the places.
     urdf : str
@@ -154,7 +156,7 @@ def place_joints(
         raise ValueError(f"frames must be whole numbers of at least 0, one for each of {count} sensors")
     sites = list(zip(places.tolist(), ways.tolist()))
     tree = [(int(child), int(parent)) for child, parent in found.tree]
-    facts = _bodyschema.place(array, found.parts.tolist(), tree, sites, own.tolist(), found.signed, jobs_of(n_jobs))
+    facts = _bodyschema.place(array, found.parts.tolist(), tree, sites, own.tolist(), found.given_signed, found.keep_saturated, jobs_of(n_jobs))
     for note in facts["notes"]:
         warnings.warn(note, RecordingWarning, stacklevel=2)
     for name in ("rotations", "joint_rotations"):

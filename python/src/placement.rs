@@ -15,6 +15,7 @@ use crate::run::{Steps, Threads};
 /// Places parts and joints. In: pressures, the part of each sensor (−1 for none), the tree as (child, parent), and position and normal of
 /// each sensor, checked before, with the frame that it is in.
 #[pyfunction]
+#[pyo3(signature = (touch, parts, tree, sites, frames, signed, keep_saturated, jobs))]
 #[expect(clippy::too_many_arguments, reason = "one for each argument of the function in Python")]
 pub(crate) fn place<'py>(
     py: Python<'py>,
@@ -23,7 +24,8 @@ pub(crate) fn place<'py>(
     tree: Vec<(usize, usize)>,
     sites: Vec<([f64; 3], [f64; 3])>,
     frames: Vec<usize>,
-    signed: bool,
+    signed: Option<bool>,
+    keep_saturated: bool,
     jobs: usize,
 ) -> PyResult<Bound<'py, PyDict>> {
     let threads = Threads::start(jobs)?;
@@ -44,7 +46,7 @@ pub(crate) fn place<'py>(
     };
     let sites: Vec<Site> = sites.into_iter().zip(frames).enumerate().map(site).collect::<PyResult<_>>()?;
     let work = move |_: &Steps| {
-        let cleaning = Cleaning { signed: Some(signed), ..Cleaning::default() };
+        let cleaning = Cleaning { signed, keep_saturated };
         let mut recording = Recording::cleaned(tactile, cleaning);
         let labels: Vec<Option<usize>> =
             recording.of_sensors(&parts).into_iter().map(|part| usize::try_from(part).ok()).collect();
@@ -57,7 +59,7 @@ pub(crate) fn place<'py>(
         let has_sensors = |part: &usize| labels.contains(part);
         let is_known = tree.iter().all(|edge| has_sensors(&edge.child) && has_sensors(&edge.parent));
         let sites = recording.of_sensors(&sites);
-        let found = is_known.then(|| placed(&recording.tactile, signed, &labels, &tree, &sites));
+        let found = is_known.then(|| placed(&recording.tactile, recording.signed, &labels, &tree, &sites));
         found.map(|found| (found, recording.sensors))
     };
     let found = threads.run(py, None, work)?;
@@ -83,16 +85,16 @@ fn facts<'py>(py: Python<'py>, placement: &Placement, notes: &[String]) -> PyRes
     facts.set_item("tree", edges(py, joints.iter().map(|joint| (joint.child, joint.parent)))?)?;
     facts.set_item(
         "known",
-        joints.iter().map(|joint| joint.fit.is_some()).collect::<Vec<bool>>().into_pyarray(py),
+        joints.iter().map(|joint| joint.standard_error.is_some()).collect::<Vec<bool>>().into_pyarray(py),
     )?;
     let place = |of: fn(&JointPlace) -> [f64; 3]| by_rows(py, 3, joints.iter().flat_map(of).collect());
     facts.set_item("in_parent", place(|joint| joint.in_parent.into())?)?;
     facts.set_item("in_child", place(|joint| joint.in_child.into())?)?;
     let turns = joints.iter().flat_map(|joint| rows(joint.rotation.matrix().as_slice())).collect();
     facts.set_item("joint_rotations", by_rows(py, 9, turns)?)?;
-    let error = |joint: &JointPlace| joint.fit.map_or(f64::NAN, |fit| fit.standard_error);
+    let error = |joint: &JointPlace| joint.standard_error.unwrap_or(f64::NAN);
     facts.set_item("standard_error", joints.iter().map(error).collect::<Vec<f64>>().into_pyarray(py))?;
-    let mismatch = |joint: &JointPlace| joint.fit.map_or(f64::NAN, |fit| fit.mismatch);
+    let mismatch = |joint: &JointPlace| joint.mismatch.unwrap_or(f64::NAN);
     facts.set_item("mismatch", joints.iter().map(mismatch).collect::<Vec<f64>>().into_pyarray(py))?;
     facts.set_item("notes", notes.to_vec())?;
     facts.set_item("urdf", urdf(placement, notes))?;

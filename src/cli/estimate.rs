@@ -132,6 +132,9 @@ impl Estimate {
             recording.sensors.len()
         );
         refuse_truth(out)?;
+        if sites.is_some() {
+            placement::refuse_others(out)?;
+        }
         prepare_folder(out)?;
         if let Some((first, fault)) = recording.dropped.first() {
             eprintln!(

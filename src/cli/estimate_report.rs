@@ -114,6 +114,7 @@ impl Shown<'_> {
             sensors: count,
             touch,
             body: None,
+            is_still: false,
             surfaces: Vec::new(),
             map: self.map(found, recording),
             truth: self.truth.map(Parts::of_truth),

@@ -9,7 +9,7 @@ use serde::Serialize;
 use crate::estimate::Estimate;
 use crate::files::sensor_sites::read_sites;
 use crate::files::tables::write_rows_of;
-use crate::files::urdf::urdf;
+use crate::files::urdf::{MARK, urdf};
 use crate::files::write_text;
 use crate::recording::Recording;
 use crate::stages::agent::Site;
@@ -35,19 +35,21 @@ struct Row {
 }
 
 impl Row {
-    fn new(JointPlace { child, parent, in_parent, in_child, fit, .. }: &JointPlace) -> Self {
+    fn new(
+        JointPlace { child, parent, in_parent, in_child, standard_error, mismatch, .. }: &JointPlace,
+    ) -> Self {
         Self {
             child: *child,
             parent: *parent,
-            known: fit.is_some(),
+            known: standard_error.is_some(),
             parent_x_m: micrometres(in_parent.x),
             parent_y_m: micrometres(in_parent.y),
             parent_z_m: micrometres(in_parent.z),
             child_x_m: micrometres(in_child.x),
             child_y_m: micrometres(in_child.y),
             child_z_m: micrometres(in_child.z),
-            standard_error_m: fit.map(|fit| micrometres(fit.standard_error)),
-            mismatch: fit.map(|fit| fit.mismatch),
+            standard_error_m: standard_error.map(micrometres),
+            mismatch: *mismatch,
         }
     }
 }
@@ -84,6 +86,24 @@ pub(super) fn read(file: &Path, sensors: usize) -> Result<Vec<Site>> {
     Ok(sites)
 }
 
+/// Whether a file is one that [`write`] wrote.
+fn is_own(file: &Path) -> bool {
+    let begins = |text: String| text.contains(MARK) || text.starts_with(&COLUMNS.join(","));
+    fs::read_to_string(file).is_ok_and(begins)
+}
+
+/// Refuses a folder with files of these names that are someone else's, which would be lost.
+pub(super) fn refuse_others(out: &Path) -> Result<()> {
+    for file in FILES.map(|name| out.join(name)) {
+        ensure!(
+            !file.exists() || is_own(&file),
+            "{}: is not one that `estimate` wrote, and would be overwritten; give another --out",
+            file.display()
+        );
+    }
+    Ok(())
+}
+
 /// Writes body.urdf and places.csv, and says what is to be known about them; without sites, those of before are removed.
 pub(super) fn write(
     out: &Path,
@@ -92,7 +112,7 @@ pub(super) fn write(
     sites: Option<&[Site]>,
 ) -> Result<Vec<String>> {
     let Some(sites) = sites else {
-        for file in FILES.map(|name| out.join(name)).into_iter().filter(|file| file.exists()) {
+        for file in FILES.map(|name| out.join(name)).into_iter().filter(|file| is_own(file)) {
             fs::remove_file(&file).with_context(|| file.display().to_string())?;
         }
         return Ok(Vec::new());
@@ -102,7 +122,7 @@ pub(super) fn write(
     let notes = placement.notes(&recording.sensors);
     write_rows_of(&out.join("places.csv"), &COLUMNS, placement.joints.iter().map(Row::new))?;
     write_text(&out.join("body.urdf"), &urdf(&placement, &notes))?;
-    let known = placement.joints.iter().filter(|joint| joint.fit.is_some()).count();
+    let known = placement.joints.iter().filter(|joint| joint.standard_error.is_some()).count();
     let summary = format!(
         "body.urdf: {} boxes; the place of {known} of {} joints is known from touch (places.csv)",
         placement.parts.len(),

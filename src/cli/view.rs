@@ -72,13 +72,21 @@ impl View {
     fn at_rest(&self, out: &Path) -> Result<ExitCode> {
         let path = &self.path;
         ensure!(
-            self.tactile.is_none() && self.estimate.is_none(),
-            "{}: --tactile and --estimate are for a folder; leave them out for the file of a body",
+            self.tactile.is_none() && self.estimate.is_none() && self.file.settings.is_none(),
+            "{}: --tactile, --estimate and --settings are for a folder; leave them out for the file of a body",
             path.display()
         );
         let is_input = matches!((path.canonicalize(), out.canonicalize()), (Ok(a), Ok(b)) if a == b);
         ensure!(!is_input, "{}: is the input file; give another --out", out.display());
-        let is_body = path.extension().is_some_and(|extension| extension == "toml");
+        let is_one_of = |names: &[&str]| {
+            path.extension().is_some_and(|own| names.iter().any(|name| own.eq_ignore_ascii_case(name)))
+        };
+        ensure!(
+            !is_one_of(&["npy", "npz", "csv"]),
+            "{}: is a table or a recording, and not a body; give the folder that it is in",
+            path.display()
+        );
+        let is_body = is_one_of(&["toml"]);
         let (body, surfaces, notes) = if is_body {
             (read_body(path)?, Vec::new(), Vec::new())
         } else {

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use super::error::FileError;
 use super::npy::{read_matrix, write};
-use super::sensor_sites::{read_sites, write_sites};
+use super::sensor_sites::{read_sites_of_solids, write_sites};
 use super::tables::{read_rows, write_rows};
 use crate::stages::agent::{Agent, Shape, Site, Vector3};
 use crate::stages::simulate::{Pose, Trajectory};
@@ -98,7 +98,7 @@ impl MovedBody {
         };
         let shapes: Vec<Shape> =
             read_rows(&solids)?.into_iter().enumerate().map(shape).collect::<Result<_, _>>()?;
-        let sites = read_sites(&sensors)?;
+        let sites = read_sites_of_solids(&sensors)?;
         if let Some(at) = sites.iter().position(|site| site.part >= shapes.len()) {
             let message =
                 format!("sensor {at} is on solid {}, but there are {} solids", sites[at].part, shapes.len());

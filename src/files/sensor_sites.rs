@@ -60,7 +60,19 @@ pub(crate) fn write_sites(path: &Path, sites: &[Site]) -> Result<(), FileError> 
 /// # Errors
 /// If the file cannot be read, a number is missing or not finite, a normal is 0, or sensors are not counted 0, 1, 2, ….
 pub fn read_sites(path: &Path) -> Result<Vec<Site>, FileError> {
+    sites_of(path, read_rows(path)?)
+}
+
+/// Reads a table that [`write_sites`] wrote, in which each sensor has its solid.
+pub(crate) fn read_sites_of_solids(path: &Path) -> Result<Vec<Site>, FileError> {
     let rows: Vec<Read> = read_rows(path)?;
+    match rows.iter().position(|row| row.solid.is_none()) {
+        Some(at) => Err(FileError::new(path, format!("line {}: the sensor has no solid", at + 2))),
+        None => sites_of(path, rows),
+    }
+}
+
+fn sites_of(path: &Path, rows: Vec<Read>) -> Result<Vec<Site>, FileError> {
     let site = |(at, row): (usize, Read)| {
         let wrong = |message: String| Err(FileError::new(path, format!("line {}: {message}", at + 2)));
         if let Some(sensor) = row.sensor.filter(|sensor| *sensor != at) {

@@ -9,15 +9,18 @@ use nalgebra::{Rotation3, Vector3};
 
 use crate::stages::placement::{JointPlace, Placement};
 
+/// What the first comment begins with.
+pub const MARK: &str = "Estimated by bodyschema.";
+
 /// The robot. `notes` become comments at its head.
 pub fn urdf(placement: &Placement, notes: &[String]) -> String {
     let mut text = "<?xml version=\"1.0\"?>\n".to_owned();
-    let head = "Estimated by bodyschema. A box holds the sensors of a part; masses are not known.".to_owned();
-    // Two hyphens would end a comment.
+    let head = format!("{MARK} A box holds the sensors of a part; masses are not known.");
     for note in std::iter::once(&head).chain(notes) {
-        add(&mut text, format_args!("<!-- {} -->\n", note.replace("--", "- -")));
+        add(&mut text, format_args!("<!-- {} -->\n", note));
     }
-    text += "<robot name=\"estimated\">\n";
+    // MuJoCo wants a mass of whatever moves; programs of ROS leave this out.
+    text += "<robot name=\"estimated\">\n  <mujoco><compiler boundmass=\"1e-6\" boundinertia=\"1e-9\"/></mujoco>\n";
     for part in &placement.parts {
         let own = placement.joints.iter().find(|joint| joint.child == part.part);
         let centre = part.solid.centre - own.map_or_else(Vector3::zeros, |joint| joint.in_child);

@@ -71,6 +71,7 @@ fn scene(task: &Task, found: &TaskOutput, beginning: &Trajectory, at: usize, roo
         sensors: felt.sensors(),
         touch: frames.of_touch(&felt),
         body: Some(body),
+        is_still: false,
         surfaces: Vec::new(),
         map: maps.map(|maps| maps.in_dims(dimension)),
         truth: Some(Parts::of_truth(&agent.truth())),

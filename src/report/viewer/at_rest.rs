@@ -19,6 +19,7 @@ pub(crate) fn at_rest(body: &NamedBody, surfaces: Vec<Surface>) -> Scene {
         frames: Frames { first: 0, every: 1, count: 1 },
         times: None,
         interval: None,
+        is_still: true,
         sensors: agent.sites.len(),
         touch: vec![0.0; agent.sites.len()],
         body: Some(MovedBody::of(agent, &still)),

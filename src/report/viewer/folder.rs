@@ -81,6 +81,7 @@ pub(crate) fn read(sources: &Sources, settings: &Settings) -> Result<(Scene, Vec
         sensors,
         touch: shown,
         body,
+        is_still: false,
         surfaces: Vec::new(),
         map,
         truth,

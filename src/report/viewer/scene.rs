@@ -25,6 +25,8 @@ pub(crate) struct Scene {
     pub interval: Option<f64>,
     /// M.
     pub sensors: usize,
+    /// Whether it is a body at rest, which feels nothing.
+    pub is_still: bool,
     /// Pressures of all sensors at one frame after the other.
     pub touch: Vec<f32>,
     /// The body; `None` for that of one's own data.
@@ -80,8 +82,7 @@ impl Scene {
         json!({
             "name": name,
             "frames": frames.count,
-            // A body at rest.
-            "still": frames.count == 1 && self.touch.iter().all(|pressure| *pressure == 0.0),
+            "still": self.is_still,
             "sensors": sensors,
             "start": frames.first as f64 * interval.unwrap_or(1.0),
             "step": frames.every as f64 * interval.unwrap_or(1.0),

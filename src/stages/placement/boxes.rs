@@ -36,16 +36,24 @@ impl OrientedBox {
         Self { centre: rotation * ((low + high) / 2.0), rotation, sides }
     }
 
-    /// Points where a joint may be: the centre, the middle of each face, and the corners.
+    /// How far a point is outside, m.
+    pub(super) fn distance(&self, point: &Vector3<f64>) -> f64 {
+        let from_centre = (self.rotation.inverse() * (point - self.centre)).abs();
+        (from_centre - self.sides / 2.0).sup(&Vector3::zeros()).norm()
+    }
+
+    /// Points where a joint may be: the centre, the middle of each face, and the corners, in this order.
     pub(super) fn points(&self) -> impl Iterator<Item = Vector3<f64>> {
         let steps = [-0.5, 0.0, 0.5];
         let all = steps.into_iter().flat_map(move |x| {
             steps.into_iter().flat_map(move |y| steps.into_iter().map(move |z| Vector3::new(x, y, z)))
         });
+        let zeros = |at: &Vector3<f64>| at.iter().filter(|step| **step == 0.0).count();
         // Not the middle of an edge.
-        let chosen = all.filter(|at| at.iter().filter(|step| **step == 0.0).count() != 1);
+        let mut chosen: Vec<Vector3<f64>> = all.filter(|at| zeros(at) != 1).collect();
+        chosen.sort_by_key(|at| std::cmp::Reverse(zeros(at)));
         let Self { centre, rotation, sides } = *self;
-        chosen.map(move |at| centre + rotation * at.component_mul(&sides))
+        chosen.into_iter().map(move |at| centre + rotation * at.component_mul(&sides))
     }
 }
 
@@ -77,6 +85,10 @@ mod tests {
             assert!(inside.iter().zip(found.sides.iter()).all(|(at, side)| at.abs() <= side / 2.0 + 1e-9));
         }
         assert_eq!(found.points().count(), 15);
+        assert!(found.points().next().is_some_and(|first| (first - found.centre).norm() < 1e-9));
+        assert!(points.iter().all(|point| found.distance(point) < 1e-9));
+        let beyond = found.centre + found.rotation * (found.sides / 2.0 + Vector3::new(3.0, 4.0, 0.0));
+        assert!((found.distance(&beyond) - 5.0).abs() < 1e-9);
         assert_eq!(OrientedBox::around(&points[..1]).sides, Vector3::repeat(THIN));
     }
 }

@@ -6,7 +6,8 @@ use super::motion::Motion;
 
 /// Least samples at which both motions must be known.
 const MIN_SAMPLES: usize = 50;
-/// Weight of a sample at which both parts hardly move, in units of their mean square.
+/// Added to the energy of each sample, as a share of the mean energy, so that one at which both parts hardly move has no endless
+/// weight.
 const REST: f64 = 1e-3;
 /// Starts of which the place is improved: those of least mismatch.
 const STARTS: usize = 3;
@@ -31,17 +32,22 @@ pub struct JointPlace {
     pub in_child: Vector3<f64>,
     /// From the axes of the child's frame to those of the parent's: none at rest, otherwise what agrees best over all samples.
     pub rotation: Rotation3<f64>,
-    /// How well the place is known; `None` where touch does not tell it. It is then the middle between the nearest sensors of both
-    /// parts, or in different frames the best guess.
-    pub fit: Option<PlaceFit>,
+    /// Standard error of the place, m, by the jackknife over blocks of time: the root of the sum over the three directions, and in
+    /// different frames the larger of both. It is of random errors only. `None` where touch does not tell the place, which is then the
+    /// middle between the nearest sensors of both parts, or in different frames a guess.
+    pub standard_error: Option<f64>,
+    /// Mean square of the difference of the two speeds at the best place, as a share of the mean square of both, 0 to 1; `None` where
+    /// both motions are known at too few samples.
+    pub mismatch: Option<f64>,
 }
 
-/// How well the place of a joint is known.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PlaceFit {
-    /// Standard error of the place, m, by the jackknife over blocks of time: the root of the sum over the three directions.
+/// The place at which two speeds agree best.
+pub(super) struct Best {
+    /// In the frame of the parent and of the child, m.
+    pub place: [Vector3<f64>; 2],
+    /// As in [`JointPlace`].
     pub standard_error: f64,
-    /// Mean square of the difference of the two speeds at the joint, as a share of the mean square of both, 0 to 1.
+    /// As in [`JointPlace`].
     pub mismatch: f64,
 }
 
@@ -68,7 +74,7 @@ impl<'a> Pair<'a> {
     }
 
     /// The place where both speeds agree best. In: places to start from, in the frame of the parent and of the child.
-    pub(super) fn place(&self, starts: &[[Vector3<f64>; 2]]) -> ([Vector3<f64>; 2], PlaceFit) {
+    pub(super) fn place(&self, starts: &[[Vector3<f64>; 2]]) -> Best {
         let every = |_: usize| true;
         let mut ranked: Vec<(f64, DVector<f64>)> = starts
             .iter()
@@ -82,7 +88,7 @@ impl<'a> Pair<'a> {
             .reduce(|best, other| if other.0 < best.0 { other } else { best });
         let (mismatch, place) = best.expect("there is a start");
         let standard_error = self.standard_error(&place);
-        (self.both(&place), PlaceFit { standard_error, mismatch })
+        Best { place: self.both(&place), standard_error, mismatch }
     }
 
     /// The rotation from the child's axes to the parent's that agrees best with the velocity of the joint in both frames (Kabsch 1976).
@@ -197,7 +203,10 @@ impl<'a> Pair<'a> {
         let places: Vec<DVector<f64>> =
             (0..BLOCKS).map(|left_out| self.improved(place, &|at| block(at) != left_out)).collect();
         let mean = places.iter().sum::<DVector<f64>>() / BLOCKS as f64;
-        let spread: f64 = places.iter().map(|place| (place - &mean).norm_squared()).sum();
-        (spread * (BLOCKS - 1) as f64 / BLOCKS as f64).sqrt()
+        let spread = |from: usize| -> f64 {
+            places.iter().map(|place| (place - &mean).rows(from, 3).norm_squared()).sum()
+        };
+        let larger = (0..place.len()).step_by(3).map(spread).fold(0.0, f64::max);
+        (larger * (BLOCKS - 1) as f64 / BLOCKS as f64).sqrt()
     }
 }

@@ -16,5 +16,5 @@ mod notes;
 mod place;
 
 pub use self::boxes::OrientedBox;
-pub use self::joint::{JointPlace, PlaceFit};
+pub use self::joint::JointPlace;
 pub use self::place::{PartPlace, Placement, place};

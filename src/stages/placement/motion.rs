@@ -6,8 +6,8 @@ use nalgebra::{Matrix6, SVector, Vector3, Vector6};
 use crate::stages::agent::Site;
 use crate::stages::rigid_parts::{Als, Roots};
 
-/// Eigenvalue, as a share of the largest, from which on sensors feel a direction of motion. A cylinder without sensors on its ends
-/// feels five directions: not the rotation about its axis.
+/// Eigenvalue, as a share of the largest, from which on sensors feel a direction of motion. A cylinder with sensors on its ends
+/// feels five directions, all but the rotation about its axis; without them it feels four.
 const FEELS: f64 = 1e-4;
 /// Least eigenvalue of what is felt at a sample, as a share of what all sensors could feel, so that the motion is known there.
 const KNOWN: f64 = 0.02;

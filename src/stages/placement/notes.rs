@@ -1,9 +1,13 @@
 //! Say what a user must know about the places of parts and joints.
 
+use nalgebra::Vector3;
+
 use super::place::Placement;
 
 /// Share that a rigid motion of the given sites must explain of what a part feels: otherwise the sites are likely to be wrong.
 const EXPLAINED: f64 = 0.9;
+/// Extent of the sensors, m, from which on a note asks for their unit.
+const LARGE: f64 = 20.0;
 
 impl Placement {
     /// What is to be known about it, a line each. `sensors` are the numbers that a user has for the sensors.
@@ -13,7 +17,7 @@ impl Placement {
             if part.explained < EXPLAINED {
                 notes.push(format!(
                 "part {}: a rigid motion of the given positions and normals explains {:.0} % of what its sensors feel; are rows in the \
-                 order of the sensors, and do all normals point out of the surface?",
+                 order of the sensors, and do all normals point out of the surface, and is the part one part?",
                 part.part,
                 100.0 * part.explained.max(0.0)
             ));
@@ -27,12 +31,32 @@ impl Placement {
             ));
             }
         }
-        for joint in self.joints.iter().filter(|joint| joint.fit.is_none()) {
+        for joint in self.joints.iter().filter(|joint| joint.standard_error.is_none()) {
+            let why = match joint.mismatch {
+                None => "their motions are known at too few samples",
+                Some(_) => "no point near both has the same speed in both",
+            };
             notes.push(format!(
-            "parts {} and {}: touch does not tell the place of their joint, since no point has the same speed in both; \
-             its place is a guess",
-            joint.child, joint.parent
-        ));
+                "parts {} and {}: touch does not tell the place of their joint, since {why}; its place is a guess",
+                joint.child, joint.parent
+            ));
+        }
+        let centres = self.parts.iter().map(|part| part.solid.centre);
+        let largest = self.parts.iter().map(|part| part.solid.sides.max()).fold(0.0, f64::max);
+        let (low, high) = centres.fold(
+            (None, None),
+            |(low, high): (Option<Vector3<f64>>, Option<Vector3<f64>>), centre| {
+                (
+                    Some(low.map_or(centre, |low| low.inf(&centre))),
+                    Some(high.map_or(centre, |high| high.sup(&centre))),
+                )
+            },
+        );
+        let span = largest + low.zip(high).map_or(0.0, |(low, high)| (high - low).max());
+        if span > LARGE {
+            notes.push(format!(
+                "the sensors span {span:.0} m; if positions are in millimetres, give them in m"
+            ));
         }
         notes
     }

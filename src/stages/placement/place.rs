@@ -6,7 +6,7 @@ use nalgebra::{Rotation3, Vector3};
 use rayon::prelude::*;
 
 use super::boxes::OrientedBox;
-use super::joint::{JointPlace, Pair};
+use super::joint::{Best, JointPlace, Pair};
 use super::motion::Motion;
 use crate::stages::agent::Site;
 use crate::stages::rigid_parts::{Roots, stratified};
@@ -15,7 +15,7 @@ use crate::stages::tree::Edge;
 
 /// Samples that places are computed from, spread over all.
 const MAX_SAMPLES: usize = 5000;
-/// Mismatch of the two speeds up to which a place is known. It is below 0.001 where sensors feel the whole motion, and above 0.03 at
+/// Mismatch of the two speeds up to which a place is known. It is below 0.002 where sensors feel the whole motion, and above 0.03 at
 /// the joints of cylinders without sensors on their ends, which feel no motion along their axis.
 const MAX_MISMATCH: f64 = 0.01;
 
@@ -92,18 +92,28 @@ fn joint([parent, child]: [&PartPlace; 2], motions: [&Motion; 2], sites: &[Site]
         parent.solid.points().flat_map(pairs).collect()
     };
     let pair = Pair::new(motions, shares_frame);
-    let (place, fit) = match pair.as_ref().map(|pair| pair.place(&starts)) {
-        Some((place, fit)) if fit.mismatch <= MAX_MISMATCH => (place, Some(fit)),
-        // In different frames, nothing else tells where the parts are near to each other.
-        Some((place, _)) if !shares_frame => (place, None),
-        _ => (starts[0], None),
+    let best = pair.as_ref().map(|pair| pair.place(&starts));
+    let reach = f64::max(motions[0].radius, motions[1].radius);
+    // Along the axis of a hinge, or where a motion is not felt, both speeds may agree best far outside of both parts.
+    let is_near = |best: &Best| {
+        [parent, child].iter().zip(&best.place).all(|(part, at)| part.solid.distance(at) <= reach)
     };
+    let known = best.as_ref().filter(|best| best.mismatch <= MAX_MISMATCH && is_near(best));
+    let place = known.map_or(starts[0], |best| best.place);
     let rotation = match &pair {
         Some(pair) if !shares_frame => pair.rotation(&place),
         _ => Rotation3::identity(),
     };
     let [in_parent, in_child] = place;
-    JointPlace { child: child.part, parent: parent.part, in_parent, in_child, rotation, fit }
+    JointPlace {
+        child: child.part,
+        parent: parent.part,
+        in_parent,
+        in_child,
+        rotation,
+        standard_error: known.map(|best| best.standard_error),
+        mismatch: best.as_ref().map(|best| best.mismatch),
+    }
 }
 
 /// The middle between the two sensors of both parts that are nearest to each other.
