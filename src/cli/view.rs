@@ -11,7 +11,7 @@ use super::output::say;
 use super::touch::{FormatOptions, say_guesses};
 use crate::files::body::read_body;
 use crate::files::import::{Imported, Options, import};
-use crate::files::{FileError, write_text};
+use crate::files::{FileError, is_same_file, write_text};
 use crate::report::viewer::at_rest::at_rest;
 use crate::report::viewer::folder::{Sources, read};
 use crate::report::viewer::page::page;
@@ -76,8 +76,7 @@ impl View {
             "{}: --tactile, --estimate and --settings are for a folder; leave them out for the file of a body",
             path.display()
         );
-        let is_input = matches!((path.canonicalize(), out.canonicalize()), (Ok(a), Ok(b)) if a == b);
-        ensure!(!is_input, "{}: is the input file; give another --out", out.display());
+        ensure!(!is_same_file(path, out), "{}: is the input file; give another --out", out.display());
         let is_one_of = |names: &[&str]| {
             path.extension().is_some_and(|own| names.iter().any(|name| own.eq_ignore_ascii_case(name)))
         };

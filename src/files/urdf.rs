@@ -3,8 +3,6 @@
 //! A link is a box around the sensors of a part, in the frame of its joint. A joint turns in every direction, since touch does not
 //! tell about which axes parts turn: three hinges at one place, with two links of no shape between them.
 
-use std::fmt::Write;
-
 use nalgebra::{Rotation3, Vector3};
 
 use crate::stages::placement::{JointPlace, Placement};
@@ -17,25 +15,19 @@ pub fn urdf(placement: &Placement, notes: &[String]) -> String {
     let mut text = "<?xml version=\"1.0\"?>\n".to_owned();
     let head = format!("{MARK} A box holds the sensors of a part; masses are not known.");
     for note in std::iter::once(&head).chain(notes) {
-        add(&mut text, format_args!("<!-- {} -->\n", note));
+        text += &format!("<!-- {note} -->\n");
     }
     // MuJoCo wants a mass of whatever moves; programs of ROS leave this out.
     text += "<robot name=\"estimated\">\n  <mujoco><compiler boundmass=\"1e-6\" boundinertia=\"1e-9\"/></mujoco>\n";
     for part in &placement.parts {
         let own = placement.joints.iter().find(|joint| joint.child == part.part);
         let centre = part.solid.centre - own.map_or_else(Vector3::zeros, |joint| joint.in_child);
-        add(&mut text, format_args!("  <link name=\"part_{}\">\n", part.part));
+        text += &format!("  <link name=\"part_{}\">\n", part.part);
+        let [x, y, z] = part.solid.sides.into();
         for element in ["visual", "collision"] {
-            add(
-                &mut text,
-                format_args!("    <{element}>\n      {}\n", origin(&centre, &part.solid.rotation)),
-            );
-            let [x, y, z] = part.solid.sides.into();
-            add(
-                &mut text,
-                format_args!(
-                    "      <geometry><box size=\"{x:.6} {y:.6} {z:.6}\"/></geometry>\n    </{element}>\n"
-                ),
+            text += &format!(
+                "    <{element}>\n      {}\n      <geometry><box size=\"{x:.6} {y:.6} {z:.6}\"/></geometry>\n    </{element}>\n",
+                origin(&centre, &part.solid.rotation)
             );
         }
         text += "  </link>\n";
@@ -52,19 +44,16 @@ fn add_joint(text: &mut String, placement: &Placement, joint: &JointPlace) {
     let [one, two] = ["x", "y"].map(|axis| format!("joint_{child}_{parent}_after_{axis}"));
     let origins = [origin(&place, rotation), origin(&Vector3::zeros(), &Rotation3::identity())];
     for name in [&one, &two] {
-        add(text, format_args!("  <link name=\"{name}\"/>\n"));
+        *text += &format!("  <link name=\"{name}\"/>\n");
     }
     for ((axis, at), [from, to]) in [("x", &origins[0]), ("y", &origins[1]), ("z", &origins[1])]
         .into_iter()
         .zip([[&first, &one], [&one, &two], [&two, &last]])
     {
         let direction = ["x", "y", "z"].map(|other| if other == axis { "1" } else { "0" }).join(" ");
-        add(
-            text,
-            format_args!(
-                "  <joint name=\"joint_{child}_{parent}_{axis}\" type=\"continuous\">\n    {at}\n    <parent link=\"{from}\"/>\n    \
-                 <child link=\"{to}\"/>\n    <axis xyz=\"{direction}\"/>\n  </joint>\n"
-            ),
+        *text += &format!(
+            "  <joint name=\"joint_{child}_{parent}_{axis}\" type=\"continuous\">\n    {at}\n    <parent link=\"{from}\"/>\n    \
+             <child link=\"{to}\"/>\n    <axis xyz=\"{direction}\"/>\n  </joint>\n"
         );
     }
 }
@@ -77,8 +66,4 @@ fn origin(place: &Vector3<f64>, rotation: &Rotation3<f64>) -> String {
         if text.trim_start_matches(['-', '0', '.']).is_empty() { "0".to_owned() } else { text }
     });
     format!("<origin xyz=\"{x} {y} {z}\" rpy=\"{roll} {pitch} {yaw}\"/>")
-}
-
-fn add(text: &mut String, arguments: std::fmt::Arguments<'_>) {
-    text.write_fmt(arguments).expect("a string takes any text");
 }

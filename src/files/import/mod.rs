@@ -2,7 +2,8 @@
 //!
 //! `text` gathers the text, and `located` finds files. `mjcf` and `urdf` read links: solids in the common frame, and how each link
 //! turns on its parent. `mesh` puts a box around a mesh, and sensors on it. `prepared` holds, leaves out and
-//! weighs what a body cannot have as it is; `joined` makes parts of links. `skeleton` makes links of the joints of a recording. `docs/reference.md` says what is read and what is not.
+//! weighs what a body cannot have as it is; `joined` makes parts of links. `skeleton` makes links of the joints of a recording.
+//! `docs/reference.md` says what is read and what is not.
 
 mod document;
 mod joined;

@@ -14,6 +14,7 @@ use super::{mjcf, urdf};
 use crate::files::body::{BodyFile, write_body};
 use crate::files::bvh::read_bvh;
 use crate::files::error::FileError;
+use crate::files::whole::is_same_file;
 use crate::stages::agent::{Agent, Part};
 
 /// Extent of a body, m, from which on a note asks for its unit.
@@ -50,7 +51,7 @@ pub fn import(path: &Path, options: &Options) -> Result<Imported, FileError> {
 /// # Errors
 /// As [`import`], or if the file cannot be written or is the one that is read.
 pub fn import_into(path: &Path, out: &Path, options: &Options) -> Result<Imported, FileError> {
-    if matches!((path.canonicalize(), out.canonicalize()), (Ok(a), Ok(b)) if a == b) {
+    if is_same_file(path, out) {
         let message = format!("is the input file; give another {}", options.front_end.name("out"));
         return Err(FileError::new(out, message));
     }

@@ -1,7 +1,5 @@
 //! Say what a user must know about the places of parts and joints.
 
-use nalgebra::Vector3;
-
 use super::place::Placement;
 
 /// Share that a rigid motion of the given sites must explain of what a part feels: otherwise the sites are likely to be wrong.
@@ -25,7 +23,7 @@ impl Placement {
             if !part.left_out.is_empty() {
                 let first = sensors[part.left_out[0]];
                 notes.push(format!(
-                "part {}: {} of its sensors are left out, for they are on another solid than most of it (the first, {first})",
+                "part {}: {} of its sensors are left out, for they are in another frame than most of them (the first, {first})",
                 part.part,
                 part.left_out.len()
             ));
@@ -41,18 +39,12 @@ impl Placement {
                 joint.child, joint.parent
             ));
         }
-        let centres = self.parts.iter().map(|part| part.solid.centre);
+        let extent = |axis: usize| {
+            let along = || self.parts.iter().map(|part| part.solid.centre[axis]);
+            along().fold(f64::NEG_INFINITY, f64::max) - along().fold(f64::INFINITY, f64::min)
+        };
         let largest = self.parts.iter().map(|part| part.solid.sides.max()).fold(0.0, f64::max);
-        let (low, high) = centres.fold(
-            (None, None),
-            |(low, high): (Option<Vector3<f64>>, Option<Vector3<f64>>), centre| {
-                (
-                    Some(low.map_or(centre, |low| low.inf(&centre))),
-                    Some(high.map_or(centre, |high| high.sup(&centre))),
-                )
-            },
-        );
-        let span = largest + low.zip(high).map_or(0.0, |(low, high)| (high - low).max());
+        let span = largest + (0..3).map(extent).fold(0.0, f64::max);
         if span > LARGE {
             notes.push(format!(
                 "the sensors span {span:.0} m; if positions are in millimetres, give them in m"

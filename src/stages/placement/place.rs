@@ -8,6 +8,7 @@ use rayon::prelude::*;
 use super::boxes::OrientedBox;
 use super::joint::{Best, JointPlace, Pair};
 use super::motion::Motion;
+use crate::numerics::partition::sizes;
 use crate::stages::agent::Site;
 use crate::stages::rigid_parts::{Roots, stratified};
 use crate::stages::sense::Tactile;
@@ -55,7 +56,10 @@ pub fn place(tactile: &Tactile, signed: bool, labels: &[usize], tree: &[Edge], s
     let mut members: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
     labels.iter().enumerate().for_each(|(sensor, part)| members.entry(*part).or_default().push(sensor));
     let placed = |(part, sensors): (usize, Vec<usize>)| {
-        let frame = most_common(sensors.iter().map(|sensor| sites[*sensor].part));
+        let frames: Vec<usize> = sensors.iter().map(|sensor| sites[*sensor].part).collect();
+        // Of several that are as common, the smallest.
+        let most_common = sizes(&frames).into_iter().rev().max_by_key(|(_, count)| *count);
+        let frame = most_common.expect("a part has sensors").0;
         let (sensors, left_out): (Vec<usize>, Vec<usize>) =
             sensors.into_iter().partition(|sensor| sites[*sensor].part == frame);
         let own: Vec<&Site> = sensors.iter().map(|sensor| &sites[*sensor]).collect();
@@ -123,13 +127,6 @@ fn between(parent: &PartPlace, child: &PartPlace, sites: &[Site]) -> Vector3<f64
         parent.sensors.iter().flat_map(|a| child.sensors.iter().map(move |b| [position(*a), position(*b)]));
     let nearest = pairs.min_by(|[a, b], [c, d]| (a - b).norm_squared().total_cmp(&(c - d).norm_squared()));
     nearest.map_or_else(Vector3::zeros, |[a, b]| (a + b) / 2.0)
-}
-
-/// The most common number; of several, the smallest.
-fn most_common(numbers: impl Iterator<Item = usize>) -> usize {
-    let mut counts: BTreeMap<usize, usize> = BTreeMap::new();
-    numbers.for_each(|number| *counts.entry(number).or_default() += 1);
-    counts.into_iter().rev().max_by_key(|(_, count)| *count).map_or(0, |(number, _)| number)
 }
 
 #[cfg(test)]
