@@ -8,6 +8,7 @@ use super::document::Wrong;
 const UP: usize = 4;
 
 /// Where the files of a description are.
+#[derive(Clone)]
 pub(super) struct Located {
     folder: PathBuf,
     /// All files must be in here.
@@ -21,6 +22,11 @@ impl Located {
         let folder = folder.canonicalize().unwrap_or(folder);
         let top = folder.ancestors().take(UP + 1).last().unwrap_or(&folder).to_owned();
         Self { folder, top }
+    }
+
+    /// Those of a file that the description names: as far up as its own.
+    pub(super) fn of(&self, file: &Path) -> Self {
+        Self { folder: file.parent().unwrap_or(&self.folder).to_owned(), top: self.top.clone() }
     }
 
     /// The file of this name in `within`, relative to the description; none if it is not there. Of names such as

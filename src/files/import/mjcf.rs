@@ -1,31 +1,30 @@
 //! Read MJCF, the description that MuJoCo reads: its nested bodies, their joints and geoms.
 
 mod assets;
+mod beside;
 mod defaults;
+mod geoms;
+mod models;
 
 use std::collections::{HashMap, HashSet};
-use std::f64::consts::PI;
-use std::rc::Rc;
 
-use nalgebra::{Isometry3, Matrix3, Point3, Translation3, Vector3};
-use roxmltree::Node;
+use nalgebra::{Isometry3, Matrix3, Point3};
+use roxmltree::{Node, NodeId};
 
-use self::assets::Assets;
-use self::defaults::Defaults;
+use self::beside::Beside;
+use self::geoms::{Found, touches};
+use self::models::{Attached, Model, Sources, attached, worlds};
 use super::document::Wrong;
 use super::located::Located;
-use super::mesh::Mesh;
-use super::notes::names;
-use super::placed::{Link, Read, Solid, Turn, settled, z_to};
+use super::placed::{Link, Read, Solid, Turn, settled};
+use super::text::SUFFIX;
 use super::xml::Element;
-use crate::files::body::DENSITY;
-use crate::stages::agent::Shape;
-
-/// Elements that stand for others, which bodies may be among.
-const UNREAD: [&str; 4] = ["attach", "composite", "flexcomp", "plugin"];
 
 /// Elements of bodies that say nothing of parts, joints or shapes.
 const BESIDE: [&str; 5] = ["site", "camera", "light", "inertial", "geom"];
+/// Most bytes that are attached, and most bodies that are attached within each other.
+const MOST_ATTACHED: usize = 64 << 20;
+const DEEPEST: usize = 64;
 
 /// A frame, and what holds for all within it.
 #[derive(Clone, Copy)]
@@ -36,6 +35,10 @@ struct Frame<'a> {
     class: Option<&'a str>,
     /// The body that it belongs to; none for the world.
     body: Option<usize>,
+    /// The model that its elements are of.
+    model: usize,
+    /// What is put around their names.
+    naming: usize,
 }
 
 /// What a body names as its inertia.
@@ -48,101 +51,156 @@ struct Inertial {
     pose: Isometry3<f64>,
 }
 
+/// A geom of a body.
+struct Geom<'a> {
+    element: Element<'a>,
+    frame: Isometry3<f64>,
+    model: usize,
+}
+
 /// Bodies of a file, as far as they are read.
 struct Bodies<'a> {
-    defaults: Defaults<'a>,
-    assets: Assets<'a>,
+    models: Vec<Model<'a>>,
+    strict: bool,
     notes: Vec<String>,
+    beside: Beside,
     links: Vec<Link>,
-    /// The geoms of each body, each with its frame.
-    geoms: Vec<Vec<(Element<'a>, Isometry3<f64>)>>,
+    /// Those of each body.
+    geoms: Vec<Vec<Geom<'a>>>,
     /// The inertia that each body names.
     inertials: Vec<Option<Inertial>>,
+    /// What is put before and after the names of what is attached; nothing for the first.
+    namings: Vec<[String; 2]>,
+    /// The model and naming of all that is attached.
+    attached: Vec<(usize, usize)>,
+    /// What is being attached now, and how many bytes have been.
+    attaching: Vec<(usize, NodeId)>,
+    attached_bytes: usize,
     /// Names of bodies that have one.
-    taken: HashSet<&'a str>,
+    taken: HashSet<String>,
     unnamed: usize,
 }
 
-/// The bodies of the element `mujoco`, each after the one that carries it. `strict` refuses bodies that are tied together in
-/// addition to the tree.
+/// The bodies of the element `mujoco`, each after the one that carries it. `strict` refuses what a body cannot have, such as bodies
+/// that are tied together in addition to the tree.
 pub(super) fn links<'a>(root: Node<'a, 'a>, files: &'a Located, strict: bool) -> Result<Read, Wrong> {
-    let defaults = Defaults::new(root)?;
-    let notes = Vec::from_iter(ties(root, &defaults, strict)?);
-    let worlds = || root.children().filter(|node| node.has_tag_name("worldbody"));
-    let named = worlds().flat_map(|world| world.descendants()).filter(|node| node.has_tag_name("body"));
+    if worlds(root).next().is_none() {
+        return Err(
+            "has no <worldbody>, in which bodies are; if another file includes or attaches it, give that one"
+                .to_owned(),
+        );
+    }
+    let sources = Sources::read(root, files)?;
+    let documents = sources.documents()?;
+    let models = sources.models(root, files, &documents)?;
+    let named = models.iter().flat_map(|model| worlds(model.root)).flat_map(|world| world.descendants());
+    let taken = named.filter(|node| node.has_tag_name("body")).filter_map(|node| node.attribute("name"));
     let mut bodies = Bodies {
-        assets: Assets::new(root, files, &defaults)?,
-        defaults,
-        notes,
+        taken: taken.map(str::to_owned).collect(),
+        models,
+        strict,
+        notes: Vec::new(),
+        beside: Beside::default(),
         links: Vec::new(),
         geoms: Vec::new(),
         inertials: Vec::new(),
-        taken: named.filter_map(|node| node.attribute("name")).collect(),
+        namings: vec![Default::default()],
+        attached: vec![(0, 0)],
+        attaching: Vec::new(),
+        attached_bytes: 0,
         unnamed: 0,
     };
-    for world in worlds() {
+    for world in worlds(bodies.models[0].root) {
+        let class = world.attribute("childclass");
+        let pose = Isometry3::identity();
+        bodies.within(world, Frame { pose, class, body: None, model: 0, naming: 0 })?;
+    }
+    bodies.finish()
+}
+
+impl<'a> Bodies<'a> {
+    /// Reads what is within an element that is this frame.
+    fn within(&mut self, top: Node<'a, 'a>, frame: Frame<'a>) -> Result<(), Wrong> {
         // Elements come before those within them.
-        let mut frames = HashMap::new();
-        let still = Frame { pose: Isometry3::identity(), class: world.attribute("childclass"), body: None };
-        frames.insert(world.id(), still);
-        for node in world.descendants().filter(Node::is_element) {
-            let around = node.parent_element().and_then(|parent| frames.get(&parent.id()).copied());
-            let Some(around) = around else {
-                let tag = node.tag_name().name();
+        let mut frames = HashMap::from([(top.id(), frame)]);
+        let mut ignored = HashSet::new();
+        for node in top.descendants().skip(1).filter(Node::is_element) {
+            let parent = node.parent_element().map(|parent| parent.id());
+            if parent.is_some_and(|parent| ignored.contains(&parent)) {
+                ignored.insert(node.id());
+                continue;
+            }
+            let tag = node.tag_name().name();
+            let Some(around) = parent.and_then(|parent| frames.get(&parent).copied()) else {
                 if ["body", "geom", "joint", "freejoint", "frame"].contains(&tag) {
                     return Err(Element::new(tag, node)
                         .wrong("is within an element that cannot contain it; move it out"));
                 }
                 continue;
             };
-            if let Some(frame) = bodies.read(node, around)? {
+            let element = Element::new(self.label(tag, around), node);
+            if self.beside.has(&element, self.strict)? {
+                ignored.insert(node.id());
+            } else if tag == "attach" {
+                self.attach(&element, node, around)?;
+            } else if let Some(frame) = self.read(node, around)? {
                 frames.insert(node.id(), frame);
             }
         }
+        Ok(())
     }
-    bodies.finish()
-}
 
-/// Says which bodies are tied together in addition to the tree, which they then are not. A tie with the world is none: a body
-/// floats.
-fn ties<'a>(root: Node<'a, 'a>, defaults: &Defaults<'a>, strict: bool) -> Result<Option<String>, Wrong> {
-    let sections = root.children().filter(|node| node.has_tag_name("equality"));
-    let mut tied = Vec::new();
-    for node in sections.flat_map(|node| node.children()) {
-        let tag = node.tag_name().name();
-        if !["connect", "weld"].contains(&tag) {
-            continue;
+    /// What messages call an element in this frame.
+    fn label(&self, tag: &str, around: Frame) -> String {
+        match around.body {
+            Some(body) => format!("{tag} of body `{}`", self.links[body].name),
+            None => tag.to_owned(),
         }
-        let element = defaults.over_as(format!("{tag} in equality"), node, "equality")?;
-        let (Some(first), Some(second)) = (node.attribute("body1"), node.attribute("body2")) else {
-            continue;
-        };
-        if element.text("active") == Some("false") || [first, second].contains(&"world") {
-            continue;
-        }
-        if strict {
-            return Err(element.wrong("joins bodies in addition to the tree; remove it"));
-        }
-        tied.push(format!("{first} with {second}"));
     }
-    let names = names(tied.iter().map(String::as_str));
-    Ok(names.map(|names| format!("ties between bodies beside the tree are left out {names}")))
-}
 
-impl<'a> Bodies<'a> {
+    /// Reads what an element `attach` in a frame stands for. Its names get the prefix.
+    fn attach(&mut self, element: &Element<'a>, node: Node<'a, 'a>, around: Frame<'a>) -> Result<(), Wrong> {
+        let Attached { model, tops, is_world, class } = attached(&self.models, around.model, element)?;
+        let prefix = element.needed("prefix")?;
+        let [before, after] = &self.namings[around.naming];
+        let suffix = node.attribute(SUFFIX).unwrap_or_default();
+        self.namings.push([format!("{before}{prefix}"), format!("{suffix}{after}")]);
+        let naming = self.namings.len() - 1;
+        self.attached.push((model, naming));
+        if self.attaching.len() == DEEPEST {
+            return Err(element.wrong(format!("is more than {DEEPEST} deep within others; write some out")));
+        }
+        for top in tops {
+            let is_around = || model == around.model && node.ancestors().any(|node| node == top);
+            if is_around() || self.attaching.contains(&(model, top.id())) {
+                return Err(element.wrong("attaches what contains it; remove one of them"));
+            }
+            self.attached_bytes += top.range().len();
+            if self.attached_bytes > MOST_ATTACHED {
+                return Err(element.wrong(format!("and others attach more than {MOST_ATTACHED} bytes")));
+            }
+            self.attaching.push((model, top.id()));
+            let frame = Frame { model, naming, class, ..around };
+            match if is_world { Some(frame) } else { self.read(top, frame)? } {
+                Some(frame) => self.within(top, frame)?,
+                None => unreachable!("a body and a frame are frames"),
+            }
+            self.attaching.pop();
+        }
+        Ok(())
+    }
+
     /// Reads an element that is in a frame, but not what is within it; gives the frame that it is itself.
     fn read(&mut self, node: Node<'a, 'a>, around: Frame<'a>) -> Result<Option<Frame<'a>>, Wrong> {
         let tag = node.tag_name().name();
-        let label = match around.body {
-            Some(body) => format!("{tag} of body `{}`", self.links[body].name),
-            None => tag.to_owned(),
-        };
-        if UNREAD.contains(&tag) {
-            return Err(Element::new(label, node).wrong("is not supported; write out what it stands for"));
-        }
+        let label = self.label(tag, around);
+        let defaults = &self.models[around.model].defaults;
         match (tag, around.body) {
             ("body", parent) => {
-                let name = node.attribute("name").map_or_else(|| self.free_name(), str::to_owned);
+                let name = match node.attribute("name") {
+                    Some(name) => self.namings[around.naming].join(name),
+                    None => self.free_name(),
+                };
                 let frame = self.frame(Element::new(format!("body `{name}`"), node), node, around)?;
                 let origin = frame.pose.translation.vector;
                 let (turns, solids) = (Vec::new(), Vec::new());
@@ -153,17 +211,17 @@ impl<'a> Bodies<'a> {
             }
             ("frame", _) => self.frame(Element::new(label, node), node, around).map(Some),
             ("geom", Some(body)) => {
-                let geom = self.defaults.over(label, node, around.class)?;
-                self.geoms[body].push((geom, around.pose));
+                let element = defaults.over(label, node, around.class)?;
+                self.geoms[body].push(Geom { element, frame: around.pose, model: around.model });
                 Ok(None)
             }
             ("joint" | "freejoint", Some(body)) => {
-                let joint = self.defaults.over(label, node, around.class)?;
+                let joint = defaults.over(label, node, around.class)?;
                 let turn = if tag == "joint" { turn(&joint, &around.pose)? } else { Turn::Other("free") };
                 self.links[body].turns.push(turn);
                 Ok(None)
             }
-            ("inertial", Some(body)) if !self.defaults.weighs_geoms => {
+            ("inertial", Some(body)) if !defaults.weighs_geoms => {
                 self.inertials[body] = Some(self.inertial(&Element::new(label, node), &around)?);
                 Ok(None)
             }
@@ -174,8 +232,8 @@ impl<'a> Bodies<'a> {
 
     /// The frame that an element is.
     fn frame(&self, element: Element<'a>, node: Node<'a, 'a>, around: Frame<'a>) -> Result<Frame<'a>, Wrong> {
-        let pose = around.pose * self.defaults.pose(&element)?;
-        Ok(Frame { pose, class: node.attribute("childclass").or(around.class), body: around.body })
+        let pose = around.pose * self.models[around.model].defaults.pose(&element)?;
+        Ok(Frame { pose, class: node.attribute("childclass").or(around.class), ..around })
     }
 
     /// A name for a body that has none.
@@ -183,14 +241,14 @@ impl<'a> Bodies<'a> {
         loop {
             self.unnamed += 1;
             let name = format!("body{}", self.unnamed);
-            if !self.taken.contains(name.as_str()) {
+            if !self.taken.contains(&name) {
                 return name;
             }
         }
     }
 
     fn inertial(&self, element: &Element, around: &Frame) -> Result<Inertial, Wrong> {
-        let pose = around.pose * self.defaults.pose(element)?;
+        let pose = around.pose * self.models[around.model].defaults.pose(element)?;
         let tensor = match element.numbers("fullinertia")? {
             Some([xx, yy, zz, xy, xz, yz]) => Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz),
             None => Matrix3::from_diagonal(&element.numbers("diaginertia")?.unwrap_or_default().into()),
@@ -207,7 +265,7 @@ impl<'a> Bodies<'a> {
             self.links[body].bare_mass = bare_mass;
             self.links[body].solids = solids;
         }
-        if let Some(total) = self.defaults.total_mass {
+        if let Some(total) = self.models[0].defaults.total_mass {
             let solids = || self.links.iter().flat_map(|link| &link.solids);
             let own = solids().map(Solid::own_mass).sum::<f64>()
                 + self.links.iter().map(|link| link.bare_mass).sum::<f64>();
@@ -216,6 +274,16 @@ impl<'a> Bodies<'a> {
                 link.solids.iter_mut().for_each(|solid| solid.mass = Some(solid.own_mass() * total / own));
             }
         }
+        let known: HashSet<&str> = self.links.iter().map(|link| &*link.name).collect();
+        for (at, (model, naming)) in self.attached.iter().enumerate() {
+            let named = |name: &str| {
+                let name = self.namings[*naming].join(name);
+                (at == 0 || known.contains(&*name)).then_some(name)
+            };
+            let Model { root, defaults, .. } = &self.models[*model];
+            self.beside.of_model(*root, defaults, &named, self.strict)?;
+        }
+        self.notes.extend(self.beside.notes());
         Ok(Read { links: self.links, notes: self.notes })
     }
 
@@ -223,19 +291,20 @@ impl<'a> Bodies<'a> {
     fn solids(
         &mut self,
         body: usize,
-        geoms: &[(Element<'a>, Isometry3<f64>)],
+        geoms: &[Geom<'a>],
         inertial: Option<&Inertial>,
     ) -> Result<(Vec<Solid>, f64), Wrong> {
-        let touches = geoms.iter().map(|(geom, _)| touches(geom)).collect::<Result<Vec<_>, _>>()?;
+        let touches = geoms.iter().map(|geom| touches(&geom.element)).collect::<Result<Vec<_>, _>>()?;
         // What touches nothing is a picture, if anything else does.
         let all = !touches.contains(&true);
         let (mut solids, mut mass, mut missing) = (Vec::new(), 0.0, None);
-        for ((geom, frame), touches) in geoms.iter().zip(touches) {
+        for (Geom { element, frame, model }, touches) in geoms.iter().zip(touches) {
+            let model = &mut self.models[*model];
             // Of a picture nothing counts then.
             if inertial.is_some() && !all && !touches {
                 continue;
             }
-            let mut solid = match self.solid(geom, frame)? {
+            let mut solid = match model.solid(element, frame)? {
                 Found::Solid(solid) => solid,
                 Found::Absent(file) => {
                     missing = missing.or(Some(file));
@@ -243,7 +312,7 @@ impl<'a> Bodies<'a> {
                 }
                 Found::Endless => continue,
             };
-            if !self.defaults.weighs(geom)? {
+            if !model.defaults.weighs(element)? {
                 solid.mass = Some(0.0);
             }
             mass += solid.own_mass();
@@ -256,15 +325,6 @@ impl<'a> Bodies<'a> {
         let label = ["body", &self.links[body].name];
         Ok(settled(label, solids, mass, missing.as_deref(), inertia_box, &mut self.notes))
     }
-}
-
-/// What a geom is.
-enum Found {
-    Solid(Solid),
-    /// A mesh that cannot be had, and why.
-    Absent(String),
-    /// A plane or a height field, which is no part of a robot.
-    Endless,
 }
 
 /// How a joint of a body with this frame turns.
@@ -282,94 +342,6 @@ fn turn(joint: &Element, frame: &Isometry3<f64>) -> Result<Turn, Wrong> {
             return Err(joint.wrong(format!("has type `{other}`, which must be hinge, ball, slide or free")));
         }
     })
-}
-
-/// Whether a geom touches others.
-fn touches(geom: &Element) -> Result<bool, Wrong> {
-    let kinds = |key| geom.number(key).map(|kinds| kinds.unwrap_or(1.0));
-    Ok(kinds("contype")? != 0.0 || kinds("conaffinity")? != 0.0)
-}
-
-impl<'a> Bodies<'a> {
-    /// What a geom of a body with this frame is.
-    fn solid(&mut self, geom: &Element<'a>, frame: &Isometry3<f64>) -> Result<Found, Wrong> {
-        let kind = if geom.text("mesh").is_some() { "mesh" } else { geom.text("type").unwrap_or("sphere") };
-        let lengths = match kind {
-            "sphere" => 1,
-            "capsule" | "cylinder" => 2,
-            "box" | "ellipsoid" => 3,
-            "mesh" => {
-                let pose = frame * self.defaults.pose(geom)?;
-                return Ok(match self.assets.mesh(geom)? {
-                    Ok(mesh) => Found::Solid(self.weighed(geom, Solid::of_mesh(mesh, pose))?),
-                    Err(file) => Found::Absent(file),
-                });
-            }
-            "plane" | "hfield" => return Ok(Found::Endless),
-            other => {
-                return Err(geom.wrong(format!(
-                    "is of type `{other}`; make it a box, sphere, cylinder, capsule, ellipsoid or mesh"
-                )));
-            }
-        };
-        let ends = geom.numbers::<6>("fromto")?;
-        if ends.is_some() && kind == "sphere" {
-            return Err(geom.wrong("has fromto, but is a sphere; give its type: capsule, cylinder or box"));
-        }
-        let lengths = if ends.is_some() { 1 } else { lengths };
-        let is_flat = ["box", "ellipsoid"].contains(&kind);
-        let mut size = geom.overlaid("size")?;
-        if size.len() < lengths {
-            return Err(
-                geom.wrong(format!("has {} numbers of size, but a {kind} needs {lengths}", size.len()))
-            );
-        }
-        let pose = match ends {
-            None => self.defaults.pose(geom)?,
-            Some([a, b, c, d, e, f]) => {
-                let (from, to) = (Vector3::new(a, b, c), Vector3::new(d, e, f));
-                let along = to - from;
-                let direction = geom.direction("fromto", along.as_slice())?;
-                // MuJoCo turns z to the first end, which shows in a box alone; otherwise `from` stays the first end.
-                let turn = z_to(&if is_flat { -direction } else { direction });
-                let half = along.norm() / 2.0;
-                size = if is_flat { vec![size[0], size[0], half] } else { vec![size[0], half] };
-                Isometry3::from_parts(Translation3::from(from + along / 2.0), turn)
-            }
-        };
-        let pose = frame * pose;
-        // Lengths are halves in MJCF.
-        let solid = match size[..] {
-            [radius, ..] if kind == "sphere" => Solid::new(Shape::Sphere { radius }, pose),
-            [radius, half, ..] if kind == "capsule" => {
-                Solid::new(Shape::Capsule { radius, length: 2.0 * half }, pose)
-            }
-            [radius, half, ..] if kind == "cylinder" => {
-                Solid::new(Shape::Cylinder { radius, length: 2.0 * half }, pose)
-            }
-            [x, y, z, ..] if kind == "ellipsoid" => {
-                let mesh = Mesh::ellipsoid([x, y, z]).map_err(|wrong| geom.wrong(wrong))?;
-                let mass = DENSITY * 4.0 / 3.0 * PI * x * y * z;
-                Solid { mass: Some(mass), ..Solid::of_mesh(Rc::new(mesh), pose) }
-            }
-            [x, y, z, ..] => Solid::new(Shape::Box { sides: [x, y, z].map(|half| 2.0 * half) }, pose),
-            _ => return Err(geom.wrong("has too few numbers of size")),
-        };
-        self.weighed(geom, solid).map(Found::Solid)
-    }
-
-    /// A solid with the mass that its geom says.
-    fn weighed(&self, geom: &Element, solid: Solid) -> Result<Solid, Wrong> {
-        let mass = match (geom.number("mass")?, geom.number("density")?) {
-            (Some(mass), _) => Some(mass),
-            (None, density) if geom.text("shellinertia") == Some("true") => {
-                Some(density.unwrap_or(DENSITY) * solid.area())
-            }
-            (None, Some(density)) => Some(density * solid.own_mass() / DENSITY),
-            (None, None) => solid.mass,
-        };
-        Ok(Solid { mass, ..solid })
-    }
 }
 
 #[cfg(test)]

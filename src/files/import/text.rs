@@ -14,6 +14,8 @@ use super::xml::Element;
 /// Most bytes of a description with all that it includes, and most copies that an element may be replicated into.
 const MOST_BYTES: usize = 64 << 20;
 const MOST_COPIES: usize = 1024;
+/// Attribute of `attach` in the text that is written out: what the names get at their end, if the element is replicated.
+pub(super) const SUFFIX: &str = "suffix";
 
 /// The text of a description, written out.
 ///
@@ -21,6 +23,23 @@ const MOST_COPIES: usize = 1024;
 /// If a file cannot be read or is no XML, or if files include each other in a loop.
 pub(super) fn written_out(path: &Path, files: &Located) -> Result<String, Wrong> {
     included(path.canonicalize().unwrap_or_else(|_| path.to_owned()), files, &[])
+}
+
+/// The text of a model that another one attaches, written out. It says of itself which file it is.
+///
+/// # Errors
+/// As [`written_out`], or if it is no MJCF.
+pub(super) fn attached_text(path: &Path, files: &Located) -> Result<String, Wrong> {
+    let text = included(path.to_owned(), files, &[])?;
+    let document = parsed(&text)?;
+    let root = document.root_element();
+    if !root.has_tag_name("mujoco") {
+        let tag = root.tag_name().name();
+        return Err(format!("its root is <{tag}>, but what is attached must be <mujoco>"));
+    }
+    let start = inside(root)?.start;
+    let line = document.text_pos_at(start).row;
+    Ok(format!("{}{}{}", &text[..start], origin(path, line), &text[start..]))
 }
 
 /// The text of a file: UTF-8, or Latin-1 as old descriptions have it. What comes before an XML declaration is left out.
@@ -166,20 +185,24 @@ fn escaped(value: &str) -> String {
     value.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;").replace('\'', "&apos;")
 }
 
-/// What is in the root of a document, with a suffix on all names.
+/// What is in the root of a document, with a suffix on all names, also on those of what is attached.
 fn renamed(document: &Document, text: &str, suffix: &str) -> Result<String, Wrong> {
     let range = inside(document.root_element())?;
     let (mut whole, mut from) = (String::new(), range.start);
     for node in document.descendants().filter(Node::is_element) {
-        if let Some(name) = node.attribute_node("name") {
-            let end = name.range_value().end;
-            if end < from || end > range.end {
-                continue;
-            }
-            whole.push_str(&text[from..end]);
-            whole.push_str(suffix);
-            from = end;
+        let is_attach = node.has_tag_name("attach");
+        let name = node.attribute_node(if is_attach { SUFFIX } else { "name" });
+        let end = match name {
+            Some(name) => name.range_value().end,
+            None if is_attach => node.range().start + "<attach".len(),
+            None => continue,
+        };
+        if end < from || end > range.end {
+            continue;
         }
+        whole.push_str(&text[from..end]);
+        whole.push_str(&if name.is_some() { suffix.to_owned() } else { format!(" {SUFFIX}=\"{suffix}\"") });
+        from = end;
     }
     whole.push_str(&text[from..range.end]);
     Ok(whole)

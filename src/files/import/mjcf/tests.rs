@@ -1,10 +1,13 @@
 //! Test that MJCF means what MuJoCo's documentation says, by hand-computed places and axes, and that every mistake is named.
 
+use std::f64::consts::PI;
 use std::path::Path;
 
+use nalgebra::Vector3;
 use roxmltree::Document;
 
 use super::*;
+use crate::stages::agent::Shape;
 
 /// What is read of a description in this folder.
 fn read_in(folder: &Path, text: &str, strict: bool) -> Result<Read, Wrong> {
@@ -269,7 +272,6 @@ fn every_mistake_is_named_with_its_line_and_body() {
         ("<body name='a'><joint axis='0 0 0'/></body>", "joint of body `a` has axis of length 0"),
         ("<body name='a'><joint type='screw'/></body>", "joint of body `a` has type `screw`"),
         ("<body name='a'><inertial/></body>", "inertial of body `a` lacks mass"),
-        ("<body name='a'><attach model='b'/></body>", "attach of body `a` is not supported; write out"),
     ] {
         let message = world("", bodies).unwrap_err();
         assert!(message.contains(expected), "{bodies:?} gave {message:?}");
@@ -314,4 +316,5 @@ fn what_a_tree_has_not_or_nobody_knows_is_refused() {
         assert!(message.contains(expected), "{message}");
     }
     assert!(world("", "<a/>").unwrap_err().contains("a is unknown here"));
+    assert!(read("<mujoco><asset/></mujoco>").unwrap_err().starts_with("has no <worldbody>"));
 }

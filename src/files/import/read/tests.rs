@@ -134,10 +134,11 @@ fn what_is_neither_kind_is_refused() {
         ("<mujoco>", "not well-formed XML"),
         ("<mujoco></robot>", "not well-formed XML"),
         ("{\"mujoco\": 1}", "not well-formed XML"),
-        ("<!DOCTYPE a [<!ENTITY b 'c'>]><mujoco>&b;</mujoco>", "no body has a shape"),
+        ("<!DOCTYPE a [<!ENTITY b 'c'>]><mujoco>&b;</mujoco>", "has no <worldbody>"),
         (&bomb(), "not well-formed XML"),
         ("<sdf version='1.7'/>", "its root is <sdf>, but must be <mujoco> (MJCF) or <robot> (URDF)"),
-        ("<mujoco/>", "no body has a shape"),
+        ("<mujoco/>", "has no <worldbody>, in which bodies are"),
+        ("<mujoco><worldbody/></mujoco>", "no body has a shape"),
         ("<robot/>", "no link has a shape"),
         ("<robot><link name='a'/></robot>", "no link has a shape"),
     ] {
