@@ -72,6 +72,20 @@ impl SkinEntry {
     }
 }
 
+/// Centre of mass and inertia of a part, where they are not those of its shape.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct InertiaEntry {
+    /// Centre of mass, m; that of the shape if it is not given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub centre: Option<Vector3>,
+    /// Moments about the axes of the frame through that centre, kg m²: xx, yy, zz.
+    pub moments: Vector3,
+    /// The other elements of the tensor, kg m²: xy, xz, yz. They are 0 if they are not given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub products: Option<Vector3>,
+}
+
 /// What shape a part has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
@@ -129,6 +143,9 @@ pub struct PartEntry {
     /// Density, kg/m³.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub density: Option<f64>,
+    /// Where its mass is and how hard it is to turn.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub inertia: Option<InertiaEntry>,
     /// The earlier part that carries it; the first part has none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub parent: Option<String>,
@@ -190,7 +207,8 @@ fn check_lengths(text: &str) -> Result<(), Wrong> {
     let file: Table = toml::from_str(text).expect("it was read before");
     let parts = file.get("part").and_then(Value::as_array).into_iter().flatten();
     for part in parts.filter_map(Value::as_table) {
-        for (key, value) in part {
+        let inertia = part.get("inertia").and_then(Value::as_table).into_iter().flatten();
+        for (key, value) in part.iter().chain(inertia) {
             let most = match &**key {
                 "quaternion" => 4,
                 "places" => 6,

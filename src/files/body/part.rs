@@ -2,9 +2,9 @@
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3 as Column};
 
-use super::{JointName, PartEntry, ShapeName};
+use super::{InertiaEntry, JointName, PartEntry, ShapeName};
 use crate::numerics::range::{is_length, is_moderate};
-use crate::stages::agent::{Freedom, Joint, Part, Shape, Spot, Vector3, across};
+use crate::stages::agent::{Freedom, Inertia, Joint, Part, Shape, Spot, Vector3, across};
 
 /// Cosine from which on two axes no longer count as at right angles.
 const OBLIQUE: f64 = 1e-6;
@@ -38,6 +38,18 @@ fn direction(key: &str, value: Vector3) -> Result<Vector3, Wrong> {
 
 fn needed<T>(key: &str, value: Option<T>, shape: &str) -> Result<T, Wrong> {
     value.ok_or_else(|| format!("it lacks {key}, which a {shape} needs"))
+}
+
+/// The inertia of a part of this mass, kg, and this centre.
+fn inertia(given: InertiaEntry, centre: Vector3, mass: f64) -> Result<Inertia, Wrong> {
+    let InertiaEntry { centre: own, moments: [xx, yy, zz], products } = given;
+    let centre = own.map_or(Ok(centre), |own| place("inertia.centre", own))?;
+    let [xy, xz, yz] = products.unwrap_or_default();
+    let inertia = Inertia { centre, tensor: [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]] };
+    match inertia.fault(mass) {
+        None => Ok(inertia),
+        Some(fault) => Err(format!("its inertia {fault} (its mass is {mass:.3e} kg)")),
+    }
 }
 
 /// A sensor that is given in the frame of the file, in that of its part.
@@ -109,7 +121,9 @@ impl PartEntry {
         if !is_moderate(density) {
             return Err(format!("density is {density}, but must be 0.000001 to 1000000 (kg/m³)"));
         }
-        Ok(Part { shape, centre, rotation, density })
+        let inertia =
+            self.inertia.map(|given| inertia(given, centre, density * shape.volume())).transpose()?;
+        Ok(Part { shape, centre, rotation, density, inertia })
     }
 
     /// The joint of part `at`, which comes after `earlier` ones; the first has none.

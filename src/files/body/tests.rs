@@ -1,7 +1,7 @@
 //! Test what a body file means, and that every mistake is named.
 
 use super::*;
-use crate::stages::agent::{Freedom, Joint, Shape};
+use crate::stages::agent::{Freedom, Inertia, Joint, Shape};
 
 const TRUNK: &str =
     "[[part]]\nname = \"trunk\"\nshape = \"capsule\"\nradius = 0.1\nfrom = [0, 0, 0]\nto = [0, 0, 0.5]\n";
@@ -62,9 +62,23 @@ fn a_body_of_every_shape_and_joint_is_read_as_it_is_meant() {
 }
 
 #[test]
+fn an_inertia_is_that_of_the_file_and_about_the_middle_if_it_names_no_centre() {
+    let of = |inertia: &str| {
+        let text = format!("skin = {{ sensors = 8 }}\n{TRUNK}inertia = {{ {inertia} }}\n");
+        read(&text).unwrap().agent.parts[0].inertia.unwrap()
+    };
+    assert_eq!(
+        of("moments = [2, 2.5, 3], products = [0.1, 0.2, 0.3], centre = [4, 5, 6]"),
+        Inertia { centre: [4.0, 5.0, 6.0], tensor: [[2.0, 0.1, 0.2], [0.1, 2.5, 0.3], [0.2, 0.3, 3.0]] }
+    );
+    assert_eq!(of("moments = [1, 1, 1]").centre, [0.0, 0.0, 0.25]);
+}
+
+#[test]
 fn what_is_written_is_read_again() {
+    let inertia = "inertia = { moments = [1.0, 2.0, 3.0] }\nplaces = [[0.0, 0.0, 0.0, 0.0, 0.0, 1.0]]\n";
     let file: BodyFile =
-        toml::from_str(&format!("density = 900.0\nskin = {{ sensors = 8 }}\n{TRUNK}")).unwrap();
+        toml::from_str(&format!("density = 900.0\nskin = {{ sensors = 8 }}\n{TRUNK}{inertia}")).unwrap();
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("body.toml");
     write_body(&path, "Two lines\nof remark", &file).unwrap();
@@ -104,6 +118,23 @@ fn every_mistake_is_one_line_that_names_the_part() {
             format!("{rod}parent = \"trunk\"\njoint = \"hinge\"\naxes = [[0, 0, 1, 2]]\n"),
             "part `arm`: axes has 4 numbers",
         ),
+        (
+            format!("{rod}{joined}inertia = {{ moments = [1, 1, 3] }}\n"),
+            "part `arm`: its inertia must have no principal moment above the sum of the other two",
+        ),
+        (
+            format!("{rod}{joined}inertia = {{ moments = [1, 1, 0] }}\n"),
+            "part `arm`: its inertia must have principal moments of the mass times the square of",
+        ),
+        (
+            format!("{rod}{joined}inertia = {{ centre = [0, 0, inf], moments = [1, 1, 1] }}\n"),
+            "part `arm`: inertia.centre is [0.0, 0.0, inf]",
+        ),
+        (
+            format!("{rod}{joined}inertia = {{ moments = [1, 1, 1, 1] }}\n"),
+            "part `arm`: moments has 4 numbers, but needs 3",
+        ),
+        (format!("{rod}{joined}inertia = {{ centre = [0, 0, 0] }}\n"), "missing field `moments`"),
         (format!("{rod}density = 0\n{joined}"), "part `arm`: density is 0"),
         (rod.to_owned(), "part `arm`: it lacks parent"),
         (

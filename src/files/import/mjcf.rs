@@ -15,6 +15,7 @@ use self::beside::Beside;
 use self::geoms::{Found, touches};
 use self::models::{Attached, Model, Sources, attached, worlds};
 use super::document::Wrong;
+use super::inertia::Mass;
 use super::located::Located;
 use super::placed::{Link, Read, Solid, Turn, settled};
 use super::text::SUFFIX;
@@ -204,7 +205,7 @@ impl<'a> Bodies<'a> {
                 let frame = self.frame(Element::new(format!("body `{name}`"), node), node, around)?;
                 let origin = frame.pose.translation.vector;
                 let (turns, solids) = (Vec::new(), Vec::new());
-                self.links.push(Link { name, parent, origin, turns, solids, bare_mass: 0.0 });
+                self.links.push(Link { name, parent, origin, turns, solids, bare_mass: 0.0, named: None });
                 self.geoms.push(Vec::new());
                 self.inertials.push(None);
                 Ok(Some(Frame { body: Some(self.links.len() - 1), ..frame }))
@@ -263,6 +264,7 @@ impl<'a> Bodies<'a> {
         for (body, (geoms, inertial)) in geoms.into_iter().zip(inertials).enumerate() {
             let (solids, bare_mass) = self.solids(body, &geoms, inertial.as_ref())?;
             self.links[body].bare_mass = bare_mass;
+            self.links[body].named = inertial.and_then(|own| Mass::new(own.mass, own.tensor, &own.pose));
             self.links[body].solids = solids;
         }
         if let Some(total) = self.models[0].defaults.total_mass {
@@ -271,6 +273,7 @@ impl<'a> Bodies<'a> {
                 + self.links.iter().map(|link| link.bare_mass).sum::<f64>();
             for link in &mut self.links {
                 link.bare_mass *= total / own;
+                link.named = link.named.map(|named| named.times(total / own));
                 link.solids.iter_mut().for_each(|solid| solid.mass = Some(solid.own_mass() * total / own));
             }
         }

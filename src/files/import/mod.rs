@@ -6,6 +6,7 @@
 //! `docs/reference.md` says what is read and what is not.
 
 mod document;
+mod inertia;
 mod joined;
 mod joints;
 mod located;

@@ -1,14 +1,14 @@
 //! Links as both kinds of file give them: solids in the common frame, and turns about places and axes in it.
 
-use std::f64::consts::PI;
 use std::rc::Rc;
 
 use nalgebra::{Isometry3, Matrix3, Point3, UnitQuaternion, UnitVector3, Vector3 as Column};
 
 use super::document::Wrong;
+use super::inertia::{Mass, entry};
 use super::mesh::{Mesh, THIN, principal};
 use crate::files::body::{DENSITY, PartEntry, ShapeName, SkinEntry};
-use crate::stages::agent::{Shape, Spot, Vector3};
+use crate::stages::agent::{Inertia, Shape, Spot, Vector3};
 
 /// Volume of the smallest solid, m³: a cube of 2 mm. What is smaller marks a place.
 const TINY: f64 = 8e-9;
@@ -26,6 +26,8 @@ pub(super) struct Solid {
     pub mesh: Option<(Rc<Mesh>, Isometry3<f64>)>,
     /// Whether it only stands for what has no shape, and carries no skin.
     pub is_bare: bool,
+    /// Its share of the inertia that the description names, if it names one.
+    pub inertia: Option<Inertia>,
 }
 
 /// One way in which a link moves on its parent.
@@ -80,6 +82,8 @@ pub(super) struct Link {
     pub solids: Vec<Solid>,
     /// Mass of what has no shape on it, kg.
     pub bare_mass: f64,
+    /// All of its mass, as the description names it.
+    pub named: Option<Mass>,
 }
 
 /// What was read of a description.
@@ -155,14 +159,14 @@ fn round(number: f64) -> f64 {
 }
 
 /// Without what rounding added to a product: twelve digits.
-fn significant(number: f64) -> f64 {
+pub(super) fn significant(number: f64) -> f64 {
     format!("{number:.11e}").parse().unwrap_or(number)
 }
 
 impl Solid {
     /// A solid of this shape.
     pub(super) fn new(shape: Shape, pose: Isometry3<f64>) -> Self {
-        Self { shape, pose, mass: None, mesh: None, is_bare: false }
+        Self { shape, pose, mass: None, mesh: None, is_bare: false, inertia: None }
     }
 
     /// The box around a mesh in this frame.
@@ -189,12 +193,7 @@ impl Solid {
 
     /// Volume of its shape, m³; of a mesh that of the box.
     pub(super) fn bulk(&self) -> f64 {
-        match self.shape {
-            Shape::Cylinder { radius, length } => PI * radius * radius * length,
-            Shape::Capsule { radius, length } => PI * radius * radius * (length + 4.0 / 3.0 * radius),
-            Shape::Sphere { radius } => 4.0 / 3.0 * PI * radius.powi(3),
-            Shape::Box { sides: [x, y, z] } => x * y * z,
-        }
+        self.shape.volume()
     }
 
     /// Area of what it stands for, m².
@@ -262,6 +261,7 @@ impl Solid {
             size: None,
             quaternion: None,
             density: self.density(),
+            inertia: self.inertia.map(entry),
             parent: None,
             joint: None,
             anchor: None,

@@ -5,6 +5,7 @@ use std::f64::consts::PI;
 use nalgebra::{Isometry3, Translation3};
 
 use super::document::Wrong;
+use super::inertia::{spread, wholes};
 use super::joints::STAND_IN;
 use super::notes::names;
 use super::options::Options;
@@ -148,6 +149,7 @@ fn weigh_bare(word: &str, links: &mut [Link], strict: bool, notes: &mut Vec<Stri
     let tree = Tree::new(links);
     let first_shaped = tree.rigids.iter().position(|rigid| rigid.lead.is_some());
     let mut added = vec![0.0; tree.rigids.len()];
+    let mut bearers = Vec::with_capacity(links.len());
     for (at, link) in links.iter().enumerate() {
         let mut own = tree.rigid_of[at];
         while tree.rigids[own].lead.is_none() {
@@ -160,9 +162,16 @@ fn weigh_bare(word: &str, links: &mut [Link], strict: bool, notes: &mut Vec<Stri
         if let Some(bearer) = bearer {
             added[bearer] += link.bare_mass;
         }
+        bearers.push(bearer);
     }
     let rigids: Vec<Vec<usize>> = tree.rigids.iter().map(|rigid| rigid.links.clone()).collect();
-    for (members, added) in rigids.into_iter().zip(added) {
+    let (mut faults, mut sound) = (Vec::new(), links.to_vec());
+    for link in sound.iter_mut().filter(|link| link.named.is_some_and(|named| !named.is_sound())) {
+        faults.push(link.name.clone());
+        link.named = None;
+    }
+    let wholes = wholes(&sound, rigids.len(), &bearers);
+    for (members, added) in rigids.iter().zip(added) {
         let solids = || members.iter().flat_map(|&at| &links[at].solids);
         // A heavy link may have but a small shape, which marks a place.
         let too_dense = solids().any(|solid| solid.density().is_some_and(|density| density > DENSEST));
@@ -178,7 +187,7 @@ fn weigh_bare(word: &str, links: &mut [Link], strict: bool, notes: &mut Vec<Stri
             ));
             let all = solids().map(Solid::own_mass).sum::<f64>() + added;
             let bulk: f64 = solids().map(Solid::bulk).sum();
-            for &at in &members {
+            for &at in members {
                 links[at].solids.iter_mut().for_each(|solid| solid.mass = Some(all * solid.bulk() / bulk));
             }
             continue;
@@ -201,6 +210,20 @@ fn weigh_bare(word: &str, links: &mut [Link], strict: bool, notes: &mut Vec<Stri
             let share = if own > 0.0 { mass / own } else { 1.0 / count };
             weigh(&mut links[at].solids, all * share);
         }
+    }
+    for (members, whole) in rigids.iter().zip(&wholes) {
+        if whole.as_ref().is_some_and(|whole| !spread(links, members, whole)) {
+            faults.push(links[members[0]].name.clone());
+        }
+    }
+    if let Some(names) = names(faults.iter().map(String::as_str)) {
+        if strict {
+            return Err(format!(
+                "{word} `{}` has an inertia that no rigid body has; correct or remove it",
+                faults[0]
+            ));
+        }
+        notes.push(format!("inertias that no rigid body has are replaced by those of the shapes {names}"));
     }
     Ok(())
 }

@@ -7,6 +7,7 @@ use nalgebra::{Isometry3, Matrix3, Translation3, UnitQuaternion, Vector3};
 use roxmltree::Node;
 
 use super::document::Wrong;
+use super::inertia::Mass;
 use super::located::Located;
 use super::mesh;
 use super::notes::{absent, names};
@@ -70,9 +71,9 @@ pub(super) fn links<'a>(root: Node<'a, 'a>, files: &Located) -> Result<Read, Wro
             parent = Some(below);
             turns.extend(turn(joint, &frame)?);
         }
-        let (solids, bare_mass) = Reader { name, node, frame, files }.solids(&mut notes)?;
+        let (solids, bare_mass, named) = Reader { name, node, frame, files }.solids(&mut notes)?;
         let origin = frame.translation.vector;
-        links.push(Link { name: name.to_owned(), parent, origin, turns, solids, bare_mass });
+        links.push(Link { name: name.to_owned(), parent, origin, turns, solids, bare_mass, named });
         frames.push(frame);
     }
     Ok(Read { links, notes })
@@ -169,9 +170,9 @@ impl<'a> Reader<'a, '_> {
         labelled("link", self.name, self.node)
     }
 
-    /// What the link consists of: what it collides with, or else what it looks like, or else a box of its inertia; and the mass of
-    /// a link without any, kg.
-    fn solids(&self, notes: &mut Vec<String>) -> Result<(Vec<Solid>, f64), Wrong> {
+    /// What the link consists of: what it collides with, or else what it looks like, or else a box of its inertia; the mass of
+    /// a link without any, kg; and its mass as it names it.
+    fn solids(&self, notes: &mut Vec<String>) -> Result<(Vec<Solid>, f64, Option<Mass>), Wrong> {
         let inertial = child(self.node, "inertial");
         let mass = match inertial.and_then(|inertial| child(inertial, "mass")) {
             Some(mass) => self.element().part(mass).needed_number("value")?,
@@ -191,8 +192,12 @@ impl<'a> Reader<'a, '_> {
             }
         }
         let missing = missing.as_deref().map(absent);
-        let inertia_box = self.inertia_box(inertial, mass)?;
-        Ok(settled(["link", self.name], solids, mass, missing.as_deref(), inertia_box, notes))
+        let inertia = self.inertia(inertial)?;
+        let named = inertia.as_ref().and_then(|(tensor, pose)| Mass::new(mass, *tensor, pose));
+        let inertia_box = inertia.and_then(|(tensor, pose)| Solid::of_inertia(mass, tensor, pose));
+        let label = ["link", self.name];
+        let (solids, bare_mass) = settled(label, solids, mass, missing.as_deref(), inertia_box, notes);
+        Ok((solids, bare_mass, named))
     }
 
     /// The shapes that the link has as `tag`, and the first mesh that is not there.
@@ -227,8 +232,12 @@ impl<'a> Reader<'a, '_> {
         Ok((solids, missing))
     }
 
-    /// The box of the link's inertia, if it has one.
-    fn inertia_box(&self, inertial: Option<Node<'a, 'a>>, mass: f64) -> Result<Option<Solid>, Wrong> {
+    /// The link's inertia and its frame, if it names them.
+    #[expect(clippy::type_complexity, reason = "used once")]
+    fn inertia(
+        &self,
+        inertial: Option<Node<'a, 'a>>,
+    ) -> Result<Option<(Matrix3<f64>, Isometry3<f64>)>, Wrong> {
         let Some((inertial, inertia)) = inertial.and_then(|node| Some((node, child(node, "inertia")?)))
         else {
             return Ok(None);
@@ -238,8 +247,7 @@ impl<'a> Reader<'a, '_> {
         let [xx, yy, zz] = [number("ixx")?, number("iyy")?, number("izz")?];
         let [xy, xz, yz] = [number("ixy")?, number("ixz")?, number("iyz")?];
         let tensor = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
-        let pose = self.frame * origin(&self.element(), inertial)?;
-        Ok(Solid::of_inertia(mass, tensor, pose))
+        Ok(Some((tensor, self.frame * origin(&self.element(), inertial)?)))
     }
 }
 

@@ -2,6 +2,7 @@
 
 use std::f64::consts::FRAC_1_SQRT_2;
 
+use super::inertia::Inertia;
 use super::shape::{Shape, Vector3};
 use crate::numerics::partition::{Connected, named_by_appearance};
 use crate::stages::tree::Truth;
@@ -14,12 +15,14 @@ const ONE_PLACE: f64 = 1e-3;
 pub struct Part {
     /// Its shape.
     pub shape: Shape,
-    /// Centre of mass, m.
+    /// Centre of the shape, m.
     pub centre: Vector3,
     /// Rotation matrix from the part's frame to the world's, by rows.
     pub rotation: [Vector3; 3],
     /// Density, kg/m³.
     pub density: f64,
+    /// Centre of mass and inertia, if they are not those of the shape.
+    pub inertia: Option<Inertia>,
 }
 
 impl Part {
@@ -198,6 +201,7 @@ mod tests {
             centre: [0.0; 3],
             rotation: across([0.0, 0.0, 1.0]),
             density: 1000.0,
+            inertia: None,
         };
         let joint = |parent, child, freedom| Joint { parent, child, anchor: [0.0; 3], freedom };
         let site = |part| Site { part, position: [0.1, 0.0, 0.0], normal: [1.0, 0.0, 0.0] };
@@ -224,6 +228,7 @@ mod tests {
                 centre: [0.0; 3],
                 rotation: across([0.0, 0.0, 1.0]),
                 density: 1000.0,
+                inertia: None,
             };
             let joint = |(at, parent): (usize, &usize)| Joint {
                 parent: *parent,

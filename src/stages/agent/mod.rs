@@ -4,9 +4,11 @@
 //! file.
 
 mod body;
+mod inertia;
 mod paper;
 mod shape;
 
 pub use self::body::{Agent, Freedom, Joint, Part, Site, across};
+pub use self::inertia::Inertia;
 pub use self::paper::{Geometry, Morphology, Skin};
 pub use self::shape::{Shape, Spot, Vector3};

@@ -118,6 +118,7 @@ impl Agent {
             centre,
             rotation: across(axis),
             density: geometry.density,
+            inertia: None,
         };
         let mut parts = vec![cylinder([0.0; 3], [1.0, 0.0, 0.0])];
         let mut joints = Vec::new();

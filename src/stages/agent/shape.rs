@@ -5,7 +5,7 @@ use std::f64::consts::{PI, TAU};
 /// A position or direction in space.
 pub type Vector3 = [f64; 3];
 
-/// A solid in the frame of its part: its centre of mass is the origin, and its axis, if it has one, is z. Lengths in m.
+/// A solid in the frame of its part: its centre is the origin, and its axis, if it has one, is z. Lengths in m.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Shape {
     /// A cylinder with flat ends.
@@ -55,6 +55,40 @@ impl Shape {
             Self::Sphere { radius } => 2.0 * TAU * radius * radius,
             Self::Box { sides: [x, y, z] } => 2.0 * (x * y + y * z + z * x),
         }
+    }
+
+    /// Volume, m³.
+    pub fn volume(&self) -> f64 {
+        match *self {
+            Self::Cylinder { radius, length } => PI * radius * radius * length,
+            Self::Capsule { radius, length } => PI * radius * radius * (length + 4.0 / 3.0 * radius),
+            Self::Sphere { radius } => 4.0 / 3.0 * PI * radius.powi(3),
+            Self::Box { sides: [x, y, z] } => x * y * z,
+        }
+    }
+
+    /// Moments of inertia about its axes if it is an even solid of this mass, kg m².
+    pub fn moments(&self, mass: f64) -> Vector3 {
+        let [across, along] = match *self {
+            Self::Cylinder { radius, length } => {
+                let square = radius * radius;
+                [mass * (3.0 * square + length * length) / 12.0, mass * square / 2.0]
+            }
+            Self::Capsule { radius, length } => {
+                let ball = mass * Self::Sphere { radius }.volume() / self.volume();
+                let [across, _, along] = Self::Cylinder { radius, length }.moments(mass - ball);
+                // Each half of the ball has its centre of mass 3/8 of the radius from its flat side.
+                let own = 0.4 * radius * radius;
+                let apart = length * (length / 4.0 + 3.0 / 8.0 * radius);
+                [across + ball * (own + apart), along + ball * own]
+            }
+            Self::Sphere { radius } => [0.4 * mass * radius * radius; 2],
+            Self::Box { sides } => {
+                let [x, y, z] = sides.map(|side| mass * side * side / 12.0);
+                return [y + z, z + x, x + y];
+            }
+        };
+        [across, across, along]
     }
 
     /// Half of its extent along z, m.

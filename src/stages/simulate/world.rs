@@ -28,7 +28,7 @@ pub(super) use self::joints::ball_error;
 /// Where a part is and how it is turned.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pose {
-    /// Centre of mass, m.
+    /// Centre of its shape, m.
     pub position: Vector3,
     /// Rotation matrix from the part's frame to the world's, by rows.
     pub rotation: [Vector3; 3],

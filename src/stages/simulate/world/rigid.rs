@@ -52,7 +52,7 @@ impl Mount {
     }
 }
 
-/// Mass, kg, and inertia of a part about its centre, along the axes of its frame, kg m², by rows.
+/// Mass, kg, and inertia of a part as an even solid about its centre, along the axes of its frame, kg m², by rows.
 fn mass_of(part: &Part) -> (f64, Matrix3<f64>) {
     const ALONG_Z: i32 = 3;
     let mut mass = MaybeUninit::<ode::dMass>::uninit();
@@ -90,7 +90,7 @@ pub(super) unsafe fn make_bodies(
         let members: Vec<usize> = (0..body_of.len()).filter(|part| body_of[*part] == body).collect();
         let lead = &agent.parts[members[0]];
         let (mass, centre, tensor) = match members[..] {
-            [_] => {
+            [_] if lead.inertia.is_none() => {
                 let (mass, tensor) = mass_of(lead);
                 (mass, Column::from(lead.centre), tensor)
             }
@@ -107,16 +107,24 @@ fn whole(agent: &Agent, members: &[usize], mounts: &mut [Mount]) -> (f64, Column
     let part = |at: &usize| &agent.parts[*at];
     let masses: Vec<(f64, Matrix3<f64>)> = members.iter().map(|at| mass_of(part(at))).collect();
     let mass: f64 = masses.iter().map(|(mass, _)| mass).sum();
-    let moment = |(at, (mass, _)): (&usize, &(f64, Matrix3<f64>))| *mass * Column::from(part(at).centre);
+    let centre_of = |at: &usize| part(at).inertia.map_or(part(at).centre, |own| own.centre);
+    let moment = |(at, (mass, _)): (&usize, &(f64, Matrix3<f64>))| *mass * Column::from(centre_of(at));
     let centre = members.iter().zip(&masses).map(moment).sum::<Column<f64>>() / mass;
     let axes = matrix(&part(&members[0]).rotation);
     let mut tensor = Matrix3::zeros();
     for (at, (mass, own)) in members.iter().zip(masses) {
         let place = axes.transpose() * (Column::from(part(at).centre) - centre);
         let turn = axes.transpose() * matrix(&part(at).rotation);
+        let (own, off) = match &part(at).inertia {
+            None => (turn * own * turn.transpose(), place),
+            Some(own) => {
+                let off = axes.transpose() * (Column::from(own.centre) - centre);
+                (axes.transpose() * matrix(&own.tensor) * axes, off)
+            }
+        };
         // Huygens and Steiner.
-        let apart = Matrix3::from_diagonal_element(place.norm_squared()) - place * place.transpose();
-        tensor += turn * own * turn.transpose() + mass * apart;
+        let apart = Matrix3::from_diagonal_element(off.norm_squared()) - off * off.transpose();
+        tensor += own + mass * apart;
         mounts[*at].within = Some((place, turn));
     }
     // Rounding must not make it lopsided, which the engine refuses.
@@ -151,3 +159,6 @@ unsafe fn make_body(
         (body, Inertia::new(mass, tensor))
     }
 }
+
+#[cfg(test)]
+mod tests;

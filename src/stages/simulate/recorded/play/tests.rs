@@ -17,7 +17,8 @@ fn joint(name: &str, parent: Option<usize>, offset: Vector3, channels: &[Channel
 }
 
 fn ball(centre: Vector3) -> Part {
-    Part { shape: Shape::Sphere { radius: 0.1 }, centre, rotation: across([0.6, 0.0, 0.8]), density: 1000.0 }
+    let shape = Shape::Sphere { radius: 0.1 };
+    Part { shape, centre, rotation: across([0.6, 0.0, 0.8]), density: 1000.0, inertia: None }
 }
 
 /// A trunk at the origin, and an arm that turns on it at y = 30 units about z.

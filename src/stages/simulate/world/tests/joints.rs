@@ -6,7 +6,7 @@ use crate::stages::agent::{Freedom, Joint, Part, Shape, across};
 /// Two parts of the given shape, the second half as heavy, joined in the middle between them.
 fn pair(shape: Shape, freedom: Freedom) -> Agent {
     let rotation = across([1.0, 0.0, 0.0]);
-    let part = |x: f64, density: f64| Part { shape, centre: [x, 0.0, 0.0], rotation, density };
+    let part = |x: f64, density: f64| Part { shape, centre: [x, 0.0, 0.0], rotation, density, inertia: None };
     let joint = Joint { parent: 0, child: 1, anchor: [0.0; 3], freedom };
     Agent { parts: vec![part(-0.2, 1000.0), part(0.2, 500.0)], joints: vec![joint], sites: Vec::new() }
 }
@@ -141,6 +141,7 @@ fn parts_that_are_fixed_move_as_one_body_with_the_mass_and_inertia_of_all() {
         centre: [x, 0.0, 0.0],
         rotation: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
         density: 1000.0,
+        inertia: None,
     };
     let fixed = Joint { parent: 0, child: 1, anchor: [0.0; 3], freedom: Freedom::Fixed };
     let two = Agent { parts: vec![cube(-0.05), cube(0.05)], joints: vec![fixed], sites: Vec::new() };

@@ -1,0 +1,118 @@
+//! The mass of rigid bodies as a description names it: where it is, and how hard it is to turn.
+
+use nalgebra::{Isometry3, Matrix3, Vector3 as Column};
+
+use super::placed::{Link, Solid, rounded, significant};
+use crate::files::body::{DENSITY, InertiaEntry};
+use crate::stages::agent::Inertia;
+
+/// A mass in the common frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Mass {
+    /// kg.
+    mass: f64,
+    /// Its centre, m.
+    centre: Column<f64>,
+    /// Inertia about that centre, kg m².
+    tensor: Matrix3<f64>,
+}
+
+impl Mass {
+    /// The mass of which a description says so much, with the tensor in this frame about its origin. None if it says nothing of it:
+    /// a mass or an inertia of 0.
+    pub(super) fn new(mass: f64, tensor: Matrix3<f64>, frame: &Isometry3<f64>) -> Option<Self> {
+        let axes = frame.rotation.to_rotation_matrix();
+        let tensor = axes.matrix() * tensor * axes.matrix().transpose();
+        (mass > 0.0 && tensor != Matrix3::zeros()).then_some(Self {
+            mass,
+            centre: frame.translation.vector,
+            tensor: (tensor + tensor.transpose()) / 2.0,
+        })
+    }
+
+    fn of_solid(solid: &Solid) -> Self {
+        let mass = solid.own_mass();
+        let axes = solid.pose.rotation.to_rotation_matrix();
+        let moments = Matrix3::from_diagonal(&solid.shape.moments(mass).into());
+        let tensor = axes.matrix() * moments * axes.matrix().transpose();
+        Self { mass, centre: solid.pose.translation.vector, tensor }
+    }
+
+    /// The same matter, denser by this factor.
+    pub(super) fn times(self, factor: f64) -> Self {
+        Self { mass: factor * self.mass, tensor: factor * self.tensor, ..self }
+    }
+
+    /// All of them as one rigid body (Huygens and Steiner).
+    fn together(all: &[Self]) -> Self {
+        let mass: f64 = all.iter().map(|own| own.mass).sum();
+        let centre = all.iter().map(|own| own.mass * own.centre).sum::<Column<f64>>() / mass;
+        let about_centre = |own: &Self| {
+            let off = own.centre - centre;
+            own.tensor
+                + own.mass * (Matrix3::from_diagonal_element(off.norm_squared()) - off * off.transpose())
+        };
+        Self { mass, centre, tensor: all.iter().map(about_centre).sum() }
+    }
+
+    /// Whether a part may have a share of it: a rigid body can have it, and it is near.
+    pub(super) fn is_sound(&self) -> bool {
+        self.share(1.0).fault(self.mass).is_none() && self.centre.iter().all(|x| x.abs() <= 1e3)
+    }
+
+    /// A share of it that is spread as the whole is.
+    fn share(&self, share: f64) -> Inertia {
+        let largest = self.tensor.amax();
+        // Without what rounding added on the way.
+        let number =
+            |number: f64| significant(share * largest * ((number / largest * 1e12).round() / 1e12 + 0.0));
+        let tensor = [0, 1, 2].map(|row| [0, 1, 2].map(|column| number(self.tensor[(row, column)])));
+        Inertia { centre: rounded(self.centre), tensor }
+    }
+}
+
+/// The mass of each rigid body, where the description names that of one of its links at least; the other links are even solids, or at
+/// a point if they have no shape. `bearers` are the rigid bodies that the links count for.
+pub(super) fn wholes(links: &[Link], count: usize, bearers: &[Option<usize>]) -> Vec<Option<Mass>> {
+    let mut borne = vec![(Vec::new(), false); count];
+    for (link, bearer) in links.iter().zip(bearers) {
+        let Some((masses, is_named)) = bearer.map(|bearer| &mut borne[bearer]) else { continue };
+        *is_named |= link.named.is_some();
+        match link.named {
+            Some(named) => masses.push(named),
+            None => {
+                masses.extend(link.solids.iter().filter(|solid| !solid.is_bare).map(Mass::of_solid));
+                let point = Mass { mass: link.bare_mass, centre: link.origin, tensor: Matrix3::zeros() };
+                masses.extend((point.mass > 0.0).then_some(point));
+            }
+        }
+    }
+    borne.into_iter().map(|(masses, is_named)| is_named.then(|| Mass::together(&masses))).collect()
+}
+
+/// Gives the solids of a rigid body a share of its inertia, each by its mass; not if it is none that they can have.
+pub(super) fn spread(links: &mut [Link], members: &[usize], whole: &Mass) -> bool {
+    let all: f64 = members.iter().flat_map(|&at| &links[at].solids).map(Solid::own_mass).sum();
+    let share = |solid: &Solid| whole.share(solid.own_mass() / all);
+    let mass = |solid: &Solid| solid.density().unwrap_or(DENSITY) * solid.bulk();
+    let fits = |solid: &Solid| share(solid).fault(mass(solid)).is_none();
+    let fits = whole.is_sound() && members.iter().flat_map(|&at| &links[at].solids).all(fits);
+    for &at in members.iter().filter(|_| fits) {
+        links[at].solids.iter_mut().for_each(|solid| solid.inertia = Some(share(solid)));
+    }
+    fits
+}
+
+/// An inertia as a body file has it.
+pub(super) fn entry(inertia: Inertia) -> InertiaEntry {
+    let Inertia { centre, tensor: [[xx, xy, xz], [_, yy, yz], [_, _, zz]] } = inertia;
+    let products = [xy, xz, yz];
+    InertiaEntry {
+        centre: Some(centre),
+        moments: [xx, yy, zz],
+        products: (products != [0.0; 3]).then_some(products),
+    }
+}
+
+#[cfg(test)]
+mod tests;
