@@ -251,6 +251,8 @@ struct SeenAtRest {
     hidden: [bool; 3],
     colourings: Vec<String>,
     trees: Vec<String>,
+    /// What is said of a part of the tree that one points at.
+    parts: Vec<String>,
     /// Pixels of the body that are not white.
     drawn: usize,
     complaints: Vec<String>,
@@ -275,8 +277,21 @@ fn a_body_is_shown_before_it_moves_with_its_meshes() {
         let seen: SeenAtRest = serde_json::from_str(&seen).unwrap();
         assert_eq!((seen.hidden, &seen.colourings[..]), ([true; 3], &["true part".to_owned()][..]));
         assert_eq!((&seen.trees[..], &seen.complaints[..]), (&["True tree".to_owned()][..], &[][..]));
+        assert!(seen.parts[0].starts_with("part 0 (base"), "{:?}", seen.parts);
         assert!(seen.drawn > 1000, "{seen:?}");
     }
+}
+
+#[test]
+fn parts_have_the_names_of_the_folder() {
+    let folder = Folder::new();
+    folder.write("own/tactile.csv", "1,2\n3,4\n");
+    folder.write("own/labels.csv", "sensor,part\n0,0\n1,1\n");
+    folder.write("own/names.csv", "part,name\n1,right\n0,left\n");
+    folder.succeed("view own");
+    assert!(folder.text("own/view.html").contains("\"names\":[\"left\",\"right\"]"));
+    folder.write("own/names.csv", "part,name\n0,left\n3,right\n");
+    folder.refuse("view own", "own/names.csv: names part 3 where part 1 is expected");
 }
 
 #[test]

@@ -118,7 +118,11 @@ impl Shown<'_> {
             surfaces: Vec::new(),
             map: self.map(found, recording),
             truth: self.truth.map(Parts::of_truth),
-            estimate: Some(Parts { of, tree: found.joints.tree.iter().map(edge).collect() }),
+            estimate: Some(Parts {
+                of,
+                tree: found.joints.tree.iter().map(edge).collect(),
+                names: Vec::new(),
+            }),
         }
     }
 }

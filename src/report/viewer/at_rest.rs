@@ -25,7 +25,7 @@ pub(crate) fn at_rest(body: &NamedBody, surfaces: Vec<Surface>) -> Scene {
         body: Some(MovedBody::of(agent, &still)),
         surfaces,
         map: None,
-        truth: Some(Parts::of_truth(&agent.truth())),
+        truth: Some(Parts { names: body.rigid_names(), ..Parts::of_truth(&agent.truth()) }),
         estimate: None,
     }
 }

@@ -56,5 +56,5 @@ pub(super) fn read(folder: &Path, sensors: usize) -> Result<Parts, FileError> {
     let own = own.into_iter().filter(|row| (row.chain, row.sweep) == (chain, sweep));
     let of: Vec<Option<usize>> = labels[best * sensors..][..sensors].iter().copied().map(Some).collect();
     let tree = own.map(|Joined { child, parent, .. }| TreeEdge { child, parent, support: None });
-    Ok(Parts { of, tree: tree.collect() })
+    Ok(Parts { of, tree: tree.collect(), names: Vec::new() })
 }

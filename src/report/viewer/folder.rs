@@ -140,10 +140,29 @@ struct EdgeRow {
     in_tree: Option<bool>,
 }
 
-/// True parts and tree. A tree with the support of its edges is an estimated one, and left out.
+/// A row of names.csv.
+#[derive(Deserialize)]
+struct NameRow {
+    part: usize,
+    name: String,
+}
+
+/// True parts, their names if they have any, and the tree. A tree with the support of its edges is an estimated one, and left out.
 fn true_parts(labels: &Path, tree: &Path, sensors: usize) -> Result<Parts, FileError> {
     let mut truth = parts(labels, &[tree.to_owned()], sensors)?;
     truth.tree.retain(|edge| edge.support.is_none());
+    let names = labels.with_file_name("names.csv");
+    if names.is_file() {
+        let mut rows: Vec<NameRow> = read_rows(&names)?;
+        rows.sort_by_key(|row| row.part);
+        if let Some(at) = (0..rows.len()).find(|at| rows[*at].part != *at) {
+            return Err(FileError::new(
+                &names,
+                format!("names part {} where part {at} is expected", rows[at].part),
+            ));
+        }
+        truth.names = rows.into_iter().map(|row| row.name).collect();
+    }
     Ok(truth)
 }
 
@@ -173,7 +192,7 @@ fn check_estimate(folder: &Path, sensors: usize) -> Result<(), FileError> {
 fn parts(file: &Path, trees: &[PathBuf], sensors: usize) -> Result<Parts, FileError> {
     let of = read_parts(file, sensors)?;
     let Some(path) = trees.iter().find(|path| path.is_file()) else {
-        return Ok(Parts { of, tree: Vec::new() });
+        return Ok(Parts { of, tree: Vec::new(), names: Vec::new() });
     };
     let rows: Vec<EdgeRow> = read_rows(path)?;
     let known = |part: usize| of.contains(&Some(part));
@@ -184,7 +203,7 @@ fn parts(file: &Path, trees: &[PathBuf], sensors: usize) -> Result<Parts, FileEr
         }
         tree.push(TreeEdge { child, parent, support });
     }
-    Ok(Parts { of, tree })
+    Ok(Parts { of, tree, names: Vec::new() })
 }
 
 /// The map of the first folder that has one, and else a sketch; `None` where pressures give none.

@@ -48,6 +48,9 @@ pub(crate) struct Parts {
     pub of: Vec<Option<usize>>,
     /// Edges of the tree.
     pub tree: Vec<TreeEdge>,
+    /// What the parts are called, by number, where they have names.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub names: Vec<String>,
 }
 
 /// An edge between two parts.
@@ -65,13 +68,15 @@ impl Parts {
     /// The true ones.
     pub(crate) fn of_truth(Truth { labels, tree, .. }: &Truth) -> Self {
         let edge = |&(child, parent): &(usize, usize)| TreeEdge { child, parent, support: None };
-        Self { of: labels.iter().copied().map(Some).collect(), tree: tree.iter().map(edge).collect() }
+        let of = labels.iter().copied().map(Some).collect();
+        Self { of, tree: tree.iter().map(edge).collect(), names: Vec::new() }
     }
 
     /// Those of one posterior sample, which says nothing of how sure an edge is.
     pub(crate) fn of_sample(Sample { labels, tree, .. }: &Sample) -> Self {
         let edge = |&Edge { child, parent }: &Edge| TreeEdge { child, parent, support: None };
-        Self { of: labels.iter().copied().map(Some).collect(), tree: tree.iter().map(edge).collect() }
+        let of = labels.iter().copied().map(Some).collect();
+        Self { of, tree: tree.iter().map(edge).collect(), names: Vec::new() }
     }
 }
 

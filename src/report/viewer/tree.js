@@ -1,25 +1,26 @@
 // Draw a tree of parts, each a button that marks its sensors.
 
-function drawTree(title, { of, tree }, colours, onPart) {
+function drawTree(title, parts, colours, onPart) {
+  const { of, tree } = parts;
   const box = document.createElement("div"), heading = document.createElement("h3");
   heading.textContent = title;
   box.append(heading);
   const sizes = new Map();
   of.filter(part => part !== null).forEach(part => sizes.set(part, (sizes.get(part) ?? 0) + 1));
-  const parts = [...sizes.keys()].sort((a, b) => a - b);
-  const near = new Map(parts.map(part => [part, []]));
+  const numbers = [...sizes.keys()].sort((a, b) => a - b);
+  const near = new Map(numbers.map(part => [part, []]));
   for (const { child, parent, support } of tree) {
     near.get(child).push([parent, support]);
     near.get(parent).push([child, support]);
   }
-  const places = layout(parts, near), values = [...places.values()];
+  const places = layout(numbers, near), values = [...places.values()];
   const across = 84, down = 64, margin = 24;
   const width = across * Math.max(...values.map(([x]) => x)) + 2 * margin;
   const height = down * Math.max(...values.map(([, y]) => y)) + 2 * margin;
   const at = part => places.get(part).map((x, axis) => margin + x * [across, down][axis]);
   const svg = element("svg", { viewBox: `0 0 ${width} ${height}`, width, height, role: "group", "aria-label": title });
   const drawn = new Set();
-  for (const part of parts) {
+  for (const part of numbers) {
     for (const [other, support] of near.get(part)) {
       const key = [part, other].sort((a, b) => a - b).join(" ");
       if (drawn.has(key)) continue;
@@ -36,12 +37,14 @@ function drawTree(title, { of, tree }, colours, onPart) {
     }
   }
   const nodes = new Map();
-  for (const part of parts) {
-    const [x, y] = at(part), words = `part ${part}, ${sizes.get(part)} sensors`;
+  for (const part of numbers) {
+    const [x, y] = at(part), words = `${partName(parts, part)}, ${sizes.get(part)} sensors`;
     const node = element("g", { tabindex: 0, role: "button", "aria-label": words, "aria-pressed": "false" });
     const name = element("text", { x, y: y + 4.5 });
     name.textContent = part;
-    node.append(element("circle", { cx: x, cy: y, r: 16, stroke: css(partColour(colours.get(part))) }), name);
+    const hint = element("title", {});
+    hint.textContent = words;
+    node.append(hint, element("circle", { cx: x, cy: y, r: 16, stroke: css(partColour(colours.get(part))) }), name);
     node.addEventListener("pointerenter", () => onPart(part, false));
     node.addEventListener("pointerleave", () => onPart(null, false));
     node.addEventListener("click", () => onPart(part, true));
@@ -55,6 +58,12 @@ function drawTree(title, { of, tree }, colours, onPart) {
   }
   box.append(svg);
   return { box, mark: part => nodes.forEach((node, own) => node.setAttribute("aria-pressed", own === part)) };
+}
+
+// What a part is called: its number, and its name if it has one.
+function partName({ names }, part) {
+  const name = names?.[part];
+  return name === undefined ? `part ${part}` : `part ${part} (${name})`;
 }
 
 // Column and row of each part: leaves side by side, each other part above the middle of those below it. The part with

@@ -195,7 +195,7 @@ class Viewer {
       const parts = scene[kind];
       if (!parts || parts.of.every(part => part === null)) continue;
       const onPart = (part, keep) => {
-        const chosen = part === null ? null : { of: parts.of, part };
+        const chosen = part === null ? null : { of: parts.of, names: parts.names, part };
         if (!keep) this.pointedPart = chosen;
         else this.part = this.part?.of === parts.of && this.part.part === part ? null : chosen;
         this.draw();
@@ -311,13 +311,14 @@ class Viewer {
     let words = "Point at a sensor, or at a part of a tree.";
     if (marked !== null) {
       const { truth, estimate, touch } = this.scene;
-      const part = (name, parts) => parts ? `, ${name} part ${parts.of[marked] ?? "none"}` : "";
+      const part = (name, parts) => parts ? `, ${name} ${partName(parts, parts.of[marked] ?? "none")}` : "";
       const share = this.level(marked, frame) / 255;
       const most = this.level(marked, frame) === 255 ? "at least " : "";
       const felt = this.playing || this.scene.still ? "" : `, feels ${most}${Number((share * share * touch.greatest).toPrecision(2))}${this.scene.body ? " Pa" : ""}`;
       words = `Sensor ${marked}${part("true", truth)}${part("estimated", estimate)}${felt}`;
     } else if (this.chosen) {
-      words = `Part ${this.chosen.part}: ${this.chosen.of.filter(part => part === this.chosen.part).length} sensors`;
+      const name = partName(this.chosen, this.chosen.part);
+      words = `P${name.slice(1)}: ${this.chosen.of.filter(part => part === this.chosen.part).length} sensors`;
     }
     const status = this.find(".status");
     if (status.textContent !== words) status.textContent = words;
@@ -341,7 +342,7 @@ class Viewer {
       return;
     }
     const colours = [...this.partColours[colouring]].sort((a, b) => a[0] - b[0]);
-    box.replaceChildren(...colours.map(([part, at]) => key(partColour(at), `part ${part}`)));
+    box.replaceChildren(...colours.map(([part, at]) => key(partColour(at), partName(scene[colouring], part))));
     if (scene[colouring].of.includes(null)) box.append(key(NO_PART, "no part"));
   }
 
