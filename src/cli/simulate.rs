@@ -10,6 +10,7 @@ use serde::Serialize;
 use super::options::{SettingsAndSeed, metres, paper, seconds, set, with_default};
 use super::output::say;
 use crate::files::body::{NamedBody, read_body};
+use crate::files::import::at_one_place;
 use crate::files::moved_body::MovedBody;
 use crate::files::{FrontEnd, npy, prepare_folder, tables};
 use crate::movement::{Played, Playing, move_as_recorded};
@@ -117,6 +118,7 @@ impl Simulate {
         let out = &self.out;
         let truth = agent.truth();
         tables::write_truth(&out.join("labels.csv"), &out.join("tree.csv"), &truth)?;
+        let shared = at_one_place(&truth, names.as_deref());
         if let Some(names) = names {
             let rows = names.into_iter().enumerate().map(|(part, name)| NameRow { part, name });
             tables::write_rows(&out.join("names.csv"), rows)?;
@@ -128,11 +130,8 @@ impl Simulate {
             settings.interval,
         )?;
         MovedBody::of(agent, trajectory).write(out, &agent.rigid_bodies())?;
-        if truth.shares_places() {
-            say(
-                "note: several parts turn about one place, where touch cannot tell which of them carries which: joints with the same \
-                 `place` in tree.csv",
-            )?;
+        if let Some(note) = shared {
+            say(format!("note: {note}; their joints have the same `place` in tree.csv"))?;
         }
         let tactile = sense(agent, trajectory, settings);
         npy::write_tactile(&out.join("tactile.npy"), &tactile)?;

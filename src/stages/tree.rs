@@ -42,12 +42,19 @@ impl Truth {
         a != b && places(a).any(|place| places(b).any(|other| other == place))
     }
 
+    /// The parts that turn about one place with others, so that touch cannot tell which of them carries which.
+    pub fn at_one_place(&self) -> Vec<usize> {
+        let shared = |place: &usize| self.places.iter().filter(|other| *other == place).count() > 1;
+        let edges = self.tree.iter().zip(&self.places).filter(|(_, place)| shared(place));
+        let mut parts: Vec<usize> = edges.flat_map(|(&(child, parent), _)| [child, parent]).collect();
+        parts.sort_unstable();
+        parts.dedup();
+        parts
+    }
+
     /// Whether some joints are at one place.
     pub fn shares_places(&self) -> bool {
-        let mut places = self.places.clone();
-        places.sort_unstable();
-        places.dedup();
-        places.len() < self.places.len()
+        !self.at_one_place().is_empty()
     }
 
     /// Number of parts. A part with a single sensor counts, although no estimate can contain it.

@@ -3,6 +3,7 @@
 
 use super::document::Wrong;
 use super::joints::{Joint, chain, joints};
+use super::notes::names;
 use super::options::{Options, Surface};
 use super::placed::{Link, Solid};
 use super::prepared::prepared;
@@ -24,7 +25,7 @@ pub(super) struct Joined {
 pub(super) fn joined(word: &str, links: Vec<Link>, options: &Options) -> Result<Joined, Wrong> {
     let (links, mut notes) = prepared(word, links, options)?;
     let tree = Tree::new(&links);
-    let (mut parts, mut surfaces) = (Vec::new(), Vec::new());
+    let (mut parts, mut surfaces, mut sparse) = (Vec::new(), Vec::new(), Vec::new());
     // The first link that has a shape, of a link and those it is fixed on, up to its rigid body's first.
     let mut shaped: Vec<Option<usize>> = Vec::new();
     for (at, link) in links.iter().enumerate() {
@@ -40,6 +41,7 @@ pub(super) fn joined(word: &str, links: Vec<Link>, options: &Options) -> Result<
                 let name =
                     if number == 0 { link.name.clone() } else { format!("{}/{}", link.name, number + 1) };
                 let here = |message: Wrong| format!("{word} `{}`: {message}", link.name);
+                sparse.extend(solid.is_sparse(options.skin).then(|| name.clone()));
                 let mut part = solid.part(name, options.skin).map_err(here)?;
                 if number > 0 {
                     fix(&mut part, link, link);
@@ -77,6 +79,9 @@ pub(super) fn joined(word: &str, links: Vec<Link>, options: &Options) -> Result<
                 parts.push(part);
             }
         }
+    }
+    if let Some(names) = names(sparse.iter().map(String::as_str)) {
+        notes.push(format!("parts too small for a sensor at this number per area have one {names}"));
     }
     Ok(Joined { parts, surfaces, notes })
 }

@@ -16,6 +16,7 @@ use self::geoms::{Found, touches};
 use self::models::{Attached, Model, Sources, attached, worlds};
 use super::document::Wrong;
 use super::inertia::Mass;
+use super::known::{MJCF, mjcf_elements, unknown};
 use super::located::Located;
 use super::placed::{Link, Read, Solid, Turn, settled};
 use super::text::SUFFIX;
@@ -94,13 +95,15 @@ pub(super) fn links<'a>(root: Node<'a, 'a>, files: &'a Located, strict: bool) ->
     let sources = Sources::read(root, files)?;
     let documents = sources.documents()?;
     let models = sources.models(root, files, &documents)?;
+    let elements = models.iter().flat_map(|model| mjcf_elements(model.root));
+    let notes = Vec::from_iter(unknown(elements, &MJCF, strict)?);
     let named = models.iter().flat_map(|model| worlds(model.root)).flat_map(|world| world.descendants());
     let taken = named.filter(|node| node.has_tag_name("body")).filter_map(|node| node.attribute("name"));
     let mut bodies = Bodies {
         taken: taken.map(str::to_owned).collect(),
         models,
         strict,
-        notes: Vec::new(),
+        notes,
         beside: Beside::default(),
         links: Vec::new(),
         geoms: Vec::new(),

@@ -9,6 +9,7 @@ mod document;
 mod inertia;
 mod joined;
 mod joints;
+mod known;
 mod located;
 mod mesh;
 mod mjcf;
@@ -24,7 +25,7 @@ mod units;
 mod urdf;
 mod xml;
 
-pub(crate) use self::notes::names;
+pub(crate) use self::notes::{at_one_place, names};
 pub use self::options::{Imported, MIN_LENGTH, Options, SKIN, Surface};
 pub use self::read::{import, import_into};
 pub use self::skeleton::body_of_skeleton;

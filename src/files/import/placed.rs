@@ -224,11 +224,17 @@ impl Solid {
         mass.map(|mass| significant(mass / self.bulk()))
     }
 
+    /// Whether a skin is too sparse for even one sensor on it. It then has one: a part that feels nothing would be none in truth.
+    pub(super) fn is_sparse(&self, skin: SkinEntry) -> bool {
+        let wanted = skin.per_area.is_some_and(|density| density > 0.0);
+        wanted && !self.is_bare && skin.count(self.area()) == Ok(0)
+    }
+
     /// Its sensors on the mesh that it stands for: place and direction of each in the common frame. None of a shape that is no mesh:
     /// sensors are then spread over the shape.
     fn places(&self, skin: SkinEntry) -> Result<Option<Vec<[f64; 6]>>, Wrong> {
         let Some((mesh, pose)) = &self.mesh else { return Ok(None) };
-        let count = skin.count(mesh.area())?;
+        let count = if self.is_sparse(skin) { 1 } else { skin.count(mesh.area())? };
         let placed = |spot: Spot| {
             let [x, y, z] = rounded((pose * Point3::from(spot.position)).coords);
             let [a, b, c] = rounded(pose.rotation * Column::from(spot.normal));
@@ -266,9 +272,13 @@ impl Solid {
             joint: None,
             anchor: None,
             axes: None,
-            skin: self.is_bare.then_some(SkinEntry { sensors: Some(0), per_area: None }),
+            skin: None,
             places: self.places(skin)?,
         };
+        let own = if self.is_bare { Some(0) } else { self.is_sparse(skin).then_some(1) };
+        if part.places.is_none() {
+            part.skin = own.map(|sensors| SkinEntry { sensors: Some(sensors), per_area: None });
+        }
         match self.shape {
             Shape::Cylinder { radius, length } | Shape::Capsule { radius, length } => {
                 let is_cylinder = matches!(self.shape, Shape::Cylinder { .. });

@@ -6,6 +6,7 @@ use super::document::Wrong;
 use super::document::parsed;
 use super::joined::{Joined, joined};
 use super::located::Located;
+use super::notes::at_one_place;
 use super::options::{Imported, Options};
 use super::placed::Read;
 use super::skeleton::body_of_skeleton;
@@ -66,7 +67,7 @@ fn imported(text: &str, files: &Located, options: &Options) -> Result<Imported, 
     let root = document.root_element();
     let (word, Read { links, mut notes }) = match root.tag_name().name() {
         "mujoco" => ("body", mjcf::links(root, files, options.strict)?),
-        "robot" => ("link", urdf::links(root, files)?),
+        "robot" => ("link", urdf::links(root, files, options.strict)?),
         other => {
             return Err(format!("its root is <{other}>, but must be <mujoco> (MJCF) or <robot> (URDF)"));
         }
@@ -76,6 +77,7 @@ fn imported(text: &str, files: &Located, options: &Options) -> Result<Imported, 
     let file = BodyFile { density: None, skin: Some(options.skin), parts };
     let body = file.body()?;
     notes.extend(far(&body.agent));
+    notes.extend(at_one_place(&body.agent.truth(), Some(&body.rigid_names())));
     Ok(Imported { file, notes, surfaces })
 }
 

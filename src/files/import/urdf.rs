@@ -8,6 +8,7 @@ use roxmltree::Node;
 
 use super::document::Wrong;
 use super::inertia::Mass;
+use super::known::{URDF, unknown, urdf_elements};
 use super::located::Located;
 use super::mesh;
 use super::notes::{absent, names};
@@ -23,13 +24,14 @@ struct Joint<'a> {
     child: usize,
 }
 
-/// The links of the element `robot`, each after the one that carries it.
-pub(super) fn links<'a>(root: Node<'a, 'a>, files: &Located) -> Result<Read, Wrong> {
+/// The links of the element `robot`, each after the one that carries it. `strict` refuses attributes that are not known.
+pub(super) fn links<'a>(root: Node<'a, 'a>, files: &Located, strict: bool) -> Result<Read, Wrong> {
     let is_macro = |node: &Node| node.tag_name().namespace().is_some_and(|space| space.contains("xacro"));
     if let Some(node) = root.descendants().find(is_macro) {
         let wrong = Element::new(node.tag_name().name(), node);
         return Err(wrong.wrong("is an element of xacro; expand the file first: xacro FILE > robot.urdf"));
     }
+    let unknown = unknown(urdf_elements(root), &URDF, strict)?;
     let mut nodes = Vec::new();
     let mut places = HashMap::new();
     for node in root.children().filter(|node| node.has_tag_name("link")) {
@@ -56,7 +58,7 @@ pub(super) fn links<'a>(root: Node<'a, 'a>, files: &Located) -> Result<Read, Wro
         joints.push(Joint { element, node, parent, child });
     }
     let link_names: Vec<&str> = nodes.iter().map(|(name, _)| *name).collect();
-    let (mut links, mut notes): (Vec<Link>, Vec<String>) = Default::default();
+    let (mut links, mut notes) = (Vec::new(), Vec::from_iter(unknown));
     let mimics = joints.iter().filter(|joint| child(joint.node, "mimic").is_some());
     if let Some(names) = names(mimics.filter_map(|joint| joint.node.attribute("name"))) {
         notes.push(format!("joints that follow others (mimic) move by themselves {names}"));

@@ -200,6 +200,76 @@ fn deep_nesting_ends_in_a_message() {
     assert_eq!((name.as_str(), joint), ("50000", &None));
 }
 
+#[test]
+fn parts_that_turn_at_one_place_are_named() {
+    let leg = |name: &str, x: f64| {
+        format!("<body name='{name}'><joint pos='{x} 0 0'/><geom size='0.1' pos='0 0 {x}'/></body>")
+    };
+    let robot = |apart: f64| {
+        let [left, right] = [leg("left", 0.0), leg("right", apart)];
+        format!(
+            "<mujoco><worldbody><body name='trunk'><geom size='0.2'/>{left}{right}</body></worldbody></mujoco>"
+        )
+    };
+    let notes = |apart: f64| imported(&robot(apart), SKIN).unwrap().notes;
+    let note = "several parts turn about one place, where touch cannot tell which of them carries which (3): trunk, left, right";
+    assert_eq!(notes(0.0009), [note]);
+    assert!(notes(0.0011).is_empty());
+    // What has no skin is not felt, so that its joints are at one place, too.
+    let bare = "<mujoco><worldbody><body name='trunk'><joint/><body name='a' pos='1 0 0'><joint/><geom size='0.1'/></body>
+        <body name='b' pos='-1 0 0'><joint/><geom size='0.1'/></body></body><body name='d'/></worldbody></mujoco>";
+    let found = imported(bare, SKIN).unwrap().notes;
+    assert!(found.iter().all(|note| !note.contains("one place")), "two parts have one joint: {found:?}");
+    let three = bare.replace("<body name='d'/>", "").replace(
+        "</body></worldbody>",
+        "<body name='c' pos='0 1 0'><joint/><geom size='0.1'/></body></body></worldbody>",
+    );
+    assert!(imported(&three, SKIN).unwrap().notes.iter().any(|note| note.ends_with("(3): a, b, c")));
+}
+
+#[test]
+fn each_shape_has_a_sensor_where_some_are_wanted() {
+    let robot = "<mujoco><worldbody><body name='a'><geom size='0.1'/><body name='b' pos='1 0 0'><joint/><geom size='0.01'/></body>
+        <body name='c' pos='2 0 0'><joint/><geom type='ellipsoid' size='0.008 0.008 0.01'/></body></body></worldbody></mujoco>";
+    let skin = SkinEntry { sensors: None, per_area: Some(300.0) };
+    let Imported { file, notes, .. } = imported(robot, skin).unwrap();
+    let agent = file.body().unwrap().agent;
+    let count = |part: usize| agent.sites.iter().filter(|site| site.part == part).count();
+    assert_eq!([0, 1, 2].map(count), [38, 1, 1]);
+    assert_eq!(notes, ["parts too small for a sensor at this number per area have one (2): b, c"]);
+    let none = SkinEntry { sensors: None, per_area: Some(0.0) };
+    assert!(imported(robot, none).unwrap_err().contains("it has no sensors"));
+}
+
+#[test]
+fn a_body_of_millimetres_is_told() {
+    let robot = |size: &str| {
+        format!("<mujoco><worldbody><body name='a'><geom size='{size}'/></body></worldbody></mujoco>")
+    };
+    let notes = imported(&robot("300"), SKIN).unwrap().notes;
+    assert!(
+        notes[0].starts_with("the body spans 300 m; if its lengths or meshes are in millimetres"),
+        "{notes:?}"
+    );
+    assert!(imported(&robot("3"), SKIN).unwrap().notes.is_empty());
+}
+
+#[test]
+fn a_misspelt_attribute_is_told() {
+    let mjcf = "<mujoco><worldbody>\n<body name='a'><geom size='1' mas='3'/></body></worldbody></mujoco>";
+    let urdf = "<robot><link name='a'>\n<collision><geometry><sphere radius='1' mas='3'/></geometry></collision></link></robot>";
+    for (text, tag) in [(mjcf, "geom"), (urdf, "sphere")] {
+        let note = format!("attributes that are not known are ignored (1): `mas` of {tag} (line 2)");
+        assert_eq!(imported(text, SKIN).unwrap().notes, [note]);
+        let strict = Options { skin: SKIN, strict: true, ..Options::default() };
+        let refused = super::imported(text, &Located::beside(Path::new("")), &strict).unwrap_err();
+        assert_eq!(
+            refused,
+            format!("line 2: {tag} has an attribute `mas`, which is not known; correct or remove it")
+        );
+    }
+}
+
 /// Every prefix of a file, and every file with a character changed, gives a body or a line.
 #[test]
 fn damaged_files_give_a_body_or_a_line() {

@@ -9,7 +9,7 @@ use super::*;
 /// What is read of a robot in this folder.
 fn read_in(folder: &Path, content: &str) -> Result<Read, Wrong> {
     let text = format!("<robot name='r'>{content}</robot>");
-    links(Document::parse(&text).unwrap().root_element(), &Located::beside(&folder.join("r.urdf")))
+    links(Document::parse(&text).unwrap().root_element(), &Located::beside(&folder.join("r.urdf")), false)
 }
 
 fn read(content: &str) -> Result<Vec<Link>, Wrong> {
@@ -33,6 +33,15 @@ fn near(found: Vector3<f64>, expected: [f64; 3]) {
 
 const BALL: &str = "<geometry><sphere radius='0.1'/></geometry>";
 const MESH: &str = "<geometry><mesh filename='m.stl'/></geometry>";
+
+#[test]
+fn an_axis_that_is_not_given_is_x() {
+    for axis in ["", "<axis/>"] {
+        let links = read(&[links_of("a b"), joint("revolute", "a", "b", axis)].concat()).unwrap();
+        let [Turn::Hinge { axis, .. }] = &links[1].turns[..] else { panic!("{links:?}") };
+        near(*axis, [1.0, 0.0, 0.0]);
+    }
+}
 
 #[test]
 fn anchors_and_axes_of_nested_links_are_in_the_common_frame() {
