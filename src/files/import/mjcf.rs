@@ -311,7 +311,7 @@ impl<'a> Bodies<'a> {
                 continue;
             }
             let mut solid = match model.solid(element, frame)? {
-                Found::Solid(solid) => solid,
+                Found::Solid(solid) => *solid,
                 Found::Absent(file) => {
                     missing = missing.or(Some(file));
                     continue;

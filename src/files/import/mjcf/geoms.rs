@@ -15,7 +15,7 @@ use crate::stages::agent::Shape;
 
 /// What a geom is.
 pub(super) enum Found {
-    Solid(Solid),
+    Solid(Box<Solid>),
     /// A mesh that cannot be had, and why.
     Absent(String),
     /// A plane or a height field, which is no part of a robot.
@@ -39,7 +39,7 @@ impl<'a> Model<'a> {
             "mesh" => {
                 let pose = frame * self.defaults.pose(geom)?;
                 return Ok(match self.assets.mesh(geom)? {
-                    Ok(mesh) => Found::Solid(self.weighed(geom, Solid::of_mesh(mesh, pose))?),
+                    Ok(mesh) => Found::Solid(Box::new(self.weighed(geom, Solid::of_mesh(mesh, pose))?)),
                     Err(file) => Found::Absent(file),
                 });
             }
@@ -93,7 +93,7 @@ impl<'a> Model<'a> {
             [x, y, z, ..] => Solid::new(Shape::Box { sides: [x, y, z].map(|half| 2.0 * half) }, pose),
             _ => return Err(geom.wrong("has too few numbers of size")),
         };
-        self.weighed(geom, solid).map(Found::Solid)
+        self.weighed(geom, solid).map(|solid| Found::Solid(Box::new(solid)))
     }
 
     /// A solid with the mass that its geom says.
