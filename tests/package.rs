@@ -12,7 +12,7 @@ use crate::support::repository::{read, repository};
 use crate::support::said::Said;
 
 /// Largest package, in bytes before it is compressed.
-const BYTES: u64 = 2_000_000;
+const BYTES: u64 = 2_100_000;
 
 fn cargo(arguments: &str) -> String {
     let mut command = Command::new(env!("CARGO"));

@@ -28,7 +28,7 @@ enum Action {
 ///
 /// A part is a box, sphere, cylinder or capsule; the tree of parts is that of the bodies or links. A mesh becomes a box, with
 /// sensors on the mesh itself. Hinges, ball joints and fixed joints are imported, in the rest pose. Limits, friction and damping of
-/// joints, motors and contacts are ignored; masses become densities. See docs/reference.md.
+/// joints, motors and contacts are ignored; masses become densities, and inertias are kept. See docs/reference.md.
 ///
 /// Of a skeleton, each bone becomes a capsule from its joint to the next one, with a radius of 0.15 of its length. `simulate
 /// --movement` moves the body as it was recorded. Which axis points up does not matter for touch.

@@ -2,19 +2,19 @@
 
 use nalgebra::{Isometry3, Matrix3, Vector3 as Column};
 
-use super::placed::{Link, Solid, rounded, significant};
-use crate::files::body::{DENSITY, InertiaEntry};
+use super::rounding::{rounded, significant};
+use crate::files::body::InertiaEntry;
 use crate::stages::agent::Inertia;
 
 /// A mass in the common frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Mass {
     /// kg.
-    mass: f64,
+    pub mass: f64,
     /// Its centre, m.
-    centre: Column<f64>,
+    pub centre: Column<f64>,
     /// Inertia about that centre, kg m².
-    tensor: Matrix3<f64>,
+    pub tensor: Matrix3<f64>,
 }
 
 impl Mass {
@@ -30,21 +30,13 @@ impl Mass {
         })
     }
 
-    fn of_solid(solid: &Solid) -> Self {
-        let mass = solid.own_mass();
-        let axes = solid.pose.rotation.to_rotation_matrix();
-        let moments = Matrix3::from_diagonal(&solid.shape.moments(mass).into());
-        let tensor = axes.matrix() * moments * axes.matrix().transpose();
-        Self { mass, centre: solid.pose.translation.vector, tensor }
-    }
-
     /// The same matter, denser by this factor.
     pub(super) fn times(self, factor: f64) -> Self {
         Self { mass: factor * self.mass, tensor: factor * self.tensor, ..self }
     }
 
     /// All of them as one rigid body (Huygens and Steiner).
-    fn together(all: &[Self]) -> Self {
+    pub(super) fn together(all: &[Self]) -> Self {
         let mass: f64 = all.iter().map(|own| own.mass).sum();
         let centre = all.iter().map(|own| own.mass * own.centre).sum::<Column<f64>>() / mass;
         let about_centre = |own: &Self| {
@@ -61,7 +53,7 @@ impl Mass {
     }
 
     /// A share of it that is spread as the whole is.
-    fn share(&self, share: f64) -> Inertia {
+    pub(super) fn share(&self, share: f64) -> Inertia {
         let largest = self.tensor.amax();
         // Without what rounding added on the way.
         let number =
@@ -69,38 +61,6 @@ impl Mass {
         let tensor = [0, 1, 2].map(|row| [0, 1, 2].map(|column| number(self.tensor[(row, column)])));
         Inertia { centre: rounded(self.centre), tensor }
     }
-}
-
-/// The mass of each rigid body, where the description names that of one of its links at least; the other links are even solids, or at
-/// a point if they have no shape. `bearers` are the rigid bodies that the links count for.
-pub(super) fn wholes(links: &[Link], count: usize, bearers: &[Option<usize>]) -> Vec<Option<Mass>> {
-    let mut borne = vec![(Vec::new(), false); count];
-    for (link, bearer) in links.iter().zip(bearers) {
-        let Some((masses, is_named)) = bearer.map(|bearer| &mut borne[bearer]) else { continue };
-        *is_named |= link.named.is_some();
-        match link.named {
-            Some(named) => masses.push(named),
-            None => {
-                masses.extend(link.solids.iter().filter(|solid| !solid.is_bare).map(Mass::of_solid));
-                let point = Mass { mass: link.bare_mass, centre: link.origin, tensor: Matrix3::zeros() };
-                masses.extend((point.mass > 0.0).then_some(point));
-            }
-        }
-    }
-    borne.into_iter().map(|(masses, is_named)| is_named.then(|| Mass::together(&masses))).collect()
-}
-
-/// Gives the solids of a rigid body a share of its inertia, each by its mass; not if it is none that they can have.
-pub(super) fn spread(links: &mut [Link], members: &[usize], whole: &Mass) -> bool {
-    let all: f64 = members.iter().flat_map(|&at| &links[at].solids).map(Solid::own_mass).sum();
-    let share = |solid: &Solid| whole.share(solid.own_mass() / all);
-    let mass = |solid: &Solid| solid.density().unwrap_or(DENSITY) * solid.bulk();
-    let fits = |solid: &Solid| share(solid).fault(mass(solid)).is_none();
-    let fits = whole.is_sound() && members.iter().flat_map(|&at| &links[at].solids).all(fits);
-    for &at in members.iter().filter(|_| fits) {
-        links[at].solids.iter_mut().for_each(|solid| solid.inertia = Some(share(solid)));
-    }
-    fits
 }
 
 /// An inertia as a body file has it.
@@ -113,6 +73,3 @@ pub(super) fn entry(inertia: Inertia) -> InertiaEntry {
         products: (products != [0.0; 3]).then_some(products),
     }
 }
-
-#[cfg(test)]
-mod tests;

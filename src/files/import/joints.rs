@@ -4,7 +4,8 @@ use nalgebra::{Isometry3, Translation3, Vector3 as Column};
 
 use super::document::Wrong;
 use super::options::Options;
-use super::placed::{Solid, Turn, rounded};
+use super::placed::{Solid, Turn};
+use super::rounding::rounded;
 use crate::files::body::{JointName, PartEntry};
 use crate::stages::agent::{Shape, Vector3};
 

@@ -1,10 +1,15 @@
 //! Find attributes that nobody knows, such as misspelt ones, on the elements that decide shapes, joints and masses.
 
+use std::collections::HashMap;
+
 use roxmltree::Node;
 
 use super::document::{Wrong, place};
 use super::notes::names;
 use super::xml::Element;
+
+/// How many are told with their line, which takes as long as the text.
+const MOST_WORDED: usize = 16;
 
 /// Elements, and the attributes that they have.
 type Known = [(&'static str, &'static str)];
@@ -99,13 +104,15 @@ fn outside<'a>(
     })
 }
 
-/// Says which attributes of these elements are not known. `strict` refuses the first one.
+/// Says which attributes of these elements are not known, each once. `strict` refuses the first one.
 pub(super) fn unknown<'a>(
     elements: impl Iterator<Item = Node<'a, 'a>>,
     known: &Known,
     strict: bool,
 ) -> Result<Option<String>, Wrong> {
-    let mut found = Vec::new();
+    // Where each is first, and how often it is.
+    let mut found: Vec<(String, Node, usize)> = Vec::new();
+    let mut places = HashMap::new();
     for node in elements {
         let Some((tag, keys)) = known.iter().find(|(tag, _)| node.has_tag_name(*tag)) else { continue };
         let own = node.attributes().filter(|attribute| attribute.namespace().is_none());
@@ -115,14 +122,20 @@ pub(super) fn unknown<'a>(
                 return Err(Element::new(*tag, node)
                     .wrong(format!("has an attribute `{key}`, which is not known; correct or remove it")));
             }
-            let text = format!("`{key}` of {tag} ({})", place(node));
-            // What is replicated is there several times.
-            if !found.contains(&text) {
-                found.push(text);
+            let at = *places.entry((*tag, key)).or_insert(found.len());
+            match found.get_mut(at) {
+                Some((_, _, times)) => *times += 1,
+                None => found.push((format!("`{key}` of {tag}"), node, 1)),
             }
         }
     }
-    Ok(names(found.iter().map(String::as_str))
+    let word = |(what, node, times): &(String, Node, usize)| match times {
+        1 => format!("{what} ({})", place(*node)),
+        _ => format!("{what} ({} and {} more)", place(*node), times - 1),
+    };
+    let words: Vec<String> = found.iter().take(MOST_WORDED).map(word).collect();
+    let rest = found.iter().skip(MOST_WORDED).map(|(what, ..)| what.as_str());
+    Ok(names(words.iter().map(String::as_str).chain(rest))
         .map(|names| format!("attributes that are not known are ignored {names}")))
 }
 

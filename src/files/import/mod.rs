@@ -18,6 +18,8 @@ mod options;
 mod placed;
 mod prepared;
 mod read;
+mod rounding;
+mod shares;
 mod skeleton;
 mod text;
 mod tree;

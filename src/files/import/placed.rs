@@ -7,6 +7,7 @@ use nalgebra::{Isometry3, Matrix3, Point3, UnitQuaternion, UnitVector3, Vector3 
 use super::document::Wrong;
 use super::inertia::{Mass, entry};
 use super::mesh::{Mesh, THIN, principal};
+use super::rounding::{round, rounded, significant};
 use crate::files::body::{DENSITY, PartEntry, ShapeName, SkinEntry};
 use crate::stages::agent::{Inertia, Shape, Spot, Vector3};
 
@@ -146,21 +147,6 @@ pub(super) fn z_to(direction: &UnitVector3<f64>) -> UnitQuaternion<f64> {
     let axis = Column::z().cross(direction);
     let axis = UnitVector3::try_new(axis, 1e-10).unwrap_or(Column::x_axis());
     UnitQuaternion::from_axis_angle(&axis, direction.xy().norm().atan2(direction.z))
-}
-
-/// Without what rounding added on the way: 0.3 for 0.30000000000000004.
-pub(super) fn rounded(numbers: impl Into<Vector3>) -> Vector3 {
-    numbers.into().map(round)
-}
-
-fn round(number: f64) -> f64 {
-    // A negative zero becomes zero.
-    (number * 1e12).round() / 1e12 + 0.0
-}
-
-/// Without what rounding added to a product: twelve digits.
-pub(super) fn significant(number: f64) -> f64 {
-    format!("{number:.11e}").parse().unwrap_or(number)
 }
 
 impl Solid {

@@ -5,11 +5,11 @@ use std::f64::consts::PI;
 use nalgebra::{Isometry3, Translation3};
 
 use super::document::Wrong;
-use super::inertia::{spread, wholes};
 use super::joints::STAND_IN;
 use super::notes::names;
 use super::options::Options;
 use super::placed::{Link, Solid, Turn, weigh};
+use super::shares::{spread, wholes};
 use super::tree::Tree;
 use crate::files::body::DENSITY;
 use crate::stages::agent::Shape;

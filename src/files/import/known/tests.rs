@@ -18,7 +18,7 @@ fn misspelt_attributes_are_told_and_refused_if_asked() {
     let geoms = "<worldbody><body nmae='a'>\n<geom siez='1'/>\n<geom siez='1' size='1'/></body></worldbody>";
     assert_eq!(
         of_mjcf(geoms, false).unwrap().unwrap(),
-        "attributes that are not known are ignored (3): `nmae` of body (line 2), `siez` of geom (line 3), `siez` of geom (line 4)"
+        "attributes that are not known are ignored (2): `nmae` of body (line 2), `siez` of geom (line 3 and 1 more)"
     );
     let refused = of_mjcf(geoms, true).unwrap_err();
     assert_eq!(refused, "line 2: body has an attribute `nmae`, which is not known; correct or remove it");

@@ -3,7 +3,8 @@
 use std::fs;
 
 use crate::files::body::{BodyFile, DENSITY, InertiaEntry};
-use crate::files::import::{Imported, Options, import};
+use crate::files::import::options::{Imported, Options};
+use crate::files::import::read::import;
 use crate::stages::agent::Vector3;
 
 fn imported(name: &str, text: &str, strict: bool) -> Result<Imported, String> {
