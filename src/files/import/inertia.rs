@@ -2,7 +2,7 @@
 
 use nalgebra::{Isometry3, Matrix3, Vector3 as Column};
 
-use super::rounding::{rounded, significant};
+use super::rounding::rounded;
 use crate::files::body::InertiaEntry;
 use crate::stages::agent::Inertia;
 
@@ -54,11 +54,11 @@ impl Mass {
 
     /// A share of it that is spread as the whole is.
     pub(super) fn share(&self, share: f64) -> Inertia {
-        let largest = self.tensor.amax();
-        // Without what rounding added on the way.
-        let number =
-            |number: f64| significant(share * largest * ((number / largest * 1e12).round() / 1e12 + 0.0));
-        let tensor = [0, 1, 2].map(|row| [0, 1, 2].map(|column| number(self.tensor[(row, column)])));
+        // Rounding must not make it lopsided, and twelve digits of the largest number are enough of each.
+        let whole = (self.tensor + self.tensor.transpose()) * (share / 2.0);
+        let digits = (12.0 - whole.amax().log10().floor()).clamp(0.0, 300.0) as usize;
+        let number = |number: f64| format!("{number:.digits$}").parse().unwrap_or(number) + 0.0;
+        let tensor = [0, 1, 2].map(|row| [0, 1, 2].map(|column| number(whole[(row, column)])));
         Inertia { centre: rounded(self.centre), tensor }
     }
 }

@@ -72,6 +72,9 @@ fn inertial(mass: f64, moment: f64) -> String {
     )
 }
 
+/// The same, turned, which changes nothing of its inertia but the last digits.
+const TURNED: &str =
+    "<collision><origin rpy='.3 .4 .5'/><geometry><box size='.1 .1 .1'/></geometry></collision>";
 const CUBE: &str = "<collision><geometry><box size='.1 .1 .1'/></geometry></collision>";
 
 #[test]
@@ -81,7 +84,7 @@ fn links_that_are_fixed_have_the_inertia_of_all_by_the_parallel_axis_theorem() {
         format!("{}{CUBE}", inertial(1.0, 0.1)),
         format!("{}{CUBE}", inertial(3.0, 0.2)),
         inertial(1.0, 0.3),
-        CUBE.to_owned(),
+        TURNED.to_owned(),
     ];
     let text = fixed(&links.each_ref().map(|link| &**link));
     let Imported { file, notes, .. } = imported("r.urdf", &text, true).unwrap();
