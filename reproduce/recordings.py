@@ -9,21 +9,18 @@ Takes about six minutes on two cores. Status: 0, or 2 on an error.
 
 import argparse
 import csv
-import hashlib
-import json
 import pathlib
-import subprocess
 import sys
 import tempfile
-import urllib.request
 
 try:
     import tomllib
 except ModuleNotFoundError:
     sys.exit("recordings: needs Python 3.11 or newer")
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
-COLUMNS = ["recording", "use", "samples", "sensors", "fit", "true_parts", "parts", "ari", "true_joints", "joints_right", "tree_right"]
+from estimated import ROOT, TRUTH, downloaded, estimated, run
+
+COLUMNS = ["recording", "use", "samples", "sensors", "fit", *TRUTH]
 
 
 def main():
@@ -32,7 +29,8 @@ def main():
     parser.add_argument("--out", type=pathlib.Path, default=ROOT / "docs" / "shown" / "recordings", help="folder to write to")
     arguments = parser.parse_args()
     design = tomllib.loads((ROOT / "reproduce" / "recordings.toml").read_text())
-    files = [file_of(recording, arguments.files) for recording in design["recording"]]
+    of = lambda name: arguments.files / f"{name}.bvh"
+    files = [downloaded(of(one["name"]), one["url"], one["sha256"]) for one in design["recording"]]
     rows = []
     for recording, file in zip(design["recording"], files):
         with tempfile.TemporaryDirectory() as folder:
@@ -47,42 +45,14 @@ def main():
     return 0
 
 
-def file_of(recording, folder):
-    """The file of a recording, downloaded if it is not there, with the content that was measured."""
-    file = folder / f"{recording['name']}.bvh"
-    if not file.exists():
-        folder.mkdir(parents=True, exist_ok=True)
-        try:
-            with urllib.request.urlopen(recording["url"], timeout=60) as answer:
-                file.write_bytes(answer.read())
-        except OSError as error:
-            fail(f"{recording['url']}: {error}; save it yourself as {file}")
-    if hashlib.sha256(file.read_bytes()).hexdigest() != recording["sha256"]:
-        fail(f"{file}: not the file that was measured; delete it, or see reproduce/recordings.toml")
-    return file
-
-
 def measured(file, folder, design):
     """What `estimate` finds in a recorded movement, compared with the truth."""
-    program, body, seed = ROOT / "target" / "release" / "bodyschema", folder / "body.toml", str(design["seed"])
-    felt, found = folder / "felt", folder / "found"
-    run(program, "body", "import", file, "--min-length", str(design["min_length"]), "--out", body)
-    run(program, "simulate", "--body", body, "--movement", file, "--seed", seed, "--out", felt)
-    truth = ["--labels", felt / "labels.csv", "--tree", felt / "tree.csv"]
-    run(program, "estimate", felt / "tactile.npy", *truth, "--seed", seed, "--out", found, "--force")
-    summary = json.loads((found / "summary.json").read_text())
-    truth = summary["truth"]
-    return {
-        "samples": summary["samples"],
-        "sensors": summary["sensors"] - summary["dropped"],
-        "fit": summary["fit"],
-        "true_parts": truth["parts"],
-        "parts": summary["parts"],
-        "ari": f"{truth['adjusted_rand_index']:.3f}",
-        "true_joints": truth["parts"] - 1,
-        "joints_right": truth["joints_right"],
-        "tree_right": str(truth["tree_right"]).lower(),
-    }
+    body, seed, felt = folder / "body.toml", str(design["seed"]), folder / "felt"
+    run("body", "import", file, "--min-length", str(design["min_length"]), "--out", body)
+    run("simulate", "--body", body, "--movement", file, "--seed", seed, "--out", felt)
+    summary, truth = estimated(felt, folder / "found", seed)
+    sensors = summary["sensors"] - summary["dropped"]
+    return {"samples": summary["samples"], "sensors": sensors, "fit": summary["fit"], **truth}
 
 
 def page(rows, design):
@@ -111,18 +81,6 @@ def page(rows, design):
         right = sum(row["tree_right"] == "true" for row in own)
         lines += ["", f"Mean of the adjusted Rand index, {what}: {mean:.3f} (n = {len(own)}); trees right: {right} of {len(own)}."]
     return "\n".join(lines) + "\n"
-
-
-def run(*words):
-    """Run the program; stop with its message if it fails."""
-    done = subprocess.run([str(word) for word in words], capture_output=True, text=True)
-    if done.returncode:
-        fail(f"{' '.join(str(word) for word in words[:3])} failed: {done.stderr.strip()}")
-
-
-def fail(message):
-    print(f"recordings: {message}", file=sys.stderr)
-    sys.exit(2)
 
 
 if __name__ == "__main__":

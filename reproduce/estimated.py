@@ -1,0 +1,60 @@
+"""What the scripts share that estimate parts and tree of movements and robots of others: recordings.py and robots.py."""
+
+import hashlib
+import json
+import pathlib
+import subprocess
+import sys
+import urllib.request
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+PROGRAM = ROOT / "target" / "release" / "bodyschema"
+TRUTH = ["true_parts", "parts", "ari", "true_joints", "joints_right", "tree_right"]
+
+
+def downloaded(file, url, sha256):
+    """The file, downloaded if it is not there, with the content that was measured."""
+    if not file.exists():
+        file.parent.mkdir(parents=True, exist_ok=True)
+        try:
+            with urllib.request.urlopen(url, timeout=60) as answer:
+                file.write_bytes(answer.read())
+        except OSError as error:
+            fail(f"{url}: {error}; save it yourself as {file}")
+    if hashlib.sha256(file.read_bytes()).hexdigest() != sha256:
+        fail(f"{file}: not the file that was measured; delete it to download it again")
+    return file
+
+
+def estimated(felt, found, seed):
+    """What `estimate` finds in what was felt, compared with the truth: its summary, and the columns of TRUTH."""
+    truth = ["--labels", felt / "labels.csv", "--tree", felt / "tree.csv"]
+    run("estimate", felt / "tactile.npy", *truth, "--seed", seed, "--out", found, "--force")
+    summary = json.loads((found / "summary.json").read_text())
+    truth = summary["truth"]
+    return summary, {
+        "true_parts": truth["parts"],
+        "parts": summary["parts"],
+        "ari": f"{truth['adjusted_rand_index']:.3f}",
+        "true_joints": truth["parts"] - 1,
+        "joints_right": truth["joints_right"],
+        "tree_right": str(truth["tree_right"]).lower(),
+    }
+
+
+def run(*words):
+    """Run the program; stop with its message if it fails."""
+    done = tried(*words)
+    if done.returncode:
+        fail(f"bodyschema {' '.join(str(word) for word in words[:2])} failed: {done.stderr.strip()}")
+    return done
+
+
+def tried(*words):
+    """Run the program, whether or not it fails."""
+    return subprocess.run([str(word) for word in (PROGRAM, *words)], capture_output=True, text=True)
+
+
+def fail(message):
+    print(f"{pathlib.Path(sys.argv[0]).stem}: {message}", file=sys.stderr)
+    sys.exit(2)
