@@ -5,7 +5,7 @@ Downloads the files that robots-files.csv names into FOLDER of --files, where th
 robot of robots.toml as a body, moves it, and asks `bodyschema estimate` how what it finds compares with the truth. Writes robots.csv and
 README.md into the folder of --out, which is docs/shown/robots. Rows of the same revision are kept, so a run that was stopped continues.
 With --keep, bodies and results stay in a folder for each row, without what was felt over time. Needs Python 3.11, and no packages. Takes
-about an hour on two cores. Status: 0, or 2 on an error.
+about 45 minutes for each movement on two busy cores. Status: 0, or 2 on an error.
 """
 
 import argparse
