@@ -22,6 +22,7 @@ mod growth;
 mod halves;
 mod log_determinant;
 mod medians;
+mod moves;
 mod parts;
 mod pieces;
 mod regressions;

@@ -13,13 +13,13 @@ use super::medians::median;
 use crate::numerics::linkage::largest_clusters;
 
 /// Sensors of a seed cluster: the fewest, and the most. Others wait until clusters have grown.
-const SEED_SENSORS: [usize; 2] = [6, 16];
+pub(super) const SEED_SENSORS: [usize; 2] = [6, 16];
 /// Fewest sensors that several parts can be estimated from: two seed clusters.
 pub const MIN_SENSORS: usize = 2 * SEED_SENSORS[0];
 /// Least affinity of the sensors of a seed cluster, on average.
 const MIN_AFFINITY: f64 = 0.1;
 /// Share of the sensors of a cluster that each of two pieces has at most, which are tried apart.
-const PIECE: f64 = 0.6;
+pub(super) const PIECE: f64 = 0.6;
 /// Clusters of highest affinity that a cluster may merge with.
 const NEIGHBOURS: usize = 5;
 /// Nats per sample that a merge must save, and a cluster against two pieces of it.
@@ -64,6 +64,7 @@ impl Search {
             if clusters.len() > count {
                 clusters = self.assigned(clusters, &every);
             }
+            clusters = self.moved(clusters);
             let now: Vec<Vec<usize>> = clusters.iter().map(|own| own.sensors.clone()).collect();
             if now == before {
                 break;
@@ -99,13 +100,16 @@ impl Search {
 
     /// Small clusters of some sensors, of at most so many, by average linkage on their affinities.
     fn seeds(&self, sensors: &[usize], most: usize) -> Vec<Vec<usize>> {
+        let mut seeds = self.linked(sensors, most);
+        seeds.retain(|own| own.len() >= SEED_SENSORS[0]);
+        seeds
+    }
+
+    /// Clusters of some sensors, of at most so many, by average linkage on their affinities.
+    pub(super) fn linked(&self, sensors: &[usize], most: usize) -> Vec<Vec<usize>> {
         let distance = |i: usize, j: usize| 1.0 - self.affinities[(sensors[i], sensors[j])];
         let found = largest_clusters(sensors.len(), distance, Method::Average, most, 1.0 - MIN_AFFINITY);
-        found
-            .into_iter()
-            .filter(|own| own.len() >= SEED_SENSORS[0])
-            .map(|own| own.into_iter().map(|at| sensors[at]).collect())
-            .collect()
+        found.into_iter().map(|own| own.into_iter().map(|at| sensors[at]).collect()).collect()
     }
 
     /// Merges the pair of clusters that saves most, again and again, as long as one motion explains the union, and both have
@@ -121,14 +125,14 @@ impl Search {
             let new: Vec<(usize, usize)> = new.collect();
             let union = |(a, b)| ((a, b), Some(Cluster::union(&self.felt, &clusters[&a], &clusters[&b])));
             unions.extend(new.into_par_iter().map(union).collect::<Vec<_>>());
-            let saving = |(a, b): &(usize, usize)| {
-                let union = unions[&(*a, *b)].as_ref()?;
-                let both = clusters[a].description_length + clusters[b].description_length;
-                Some((both - union.description_length, (*a, *b)))
-            };
-            let best = pairs.iter().filter_map(saving);
-            let best = best.reduce(|best, other| if other.0 > best.0 { other } else { best });
-            let Some((_, (a, b))) = best.filter(|best| best.0 > MIN_SAVING) else { break };
+            let mut best = best_merge(&clusters, &unions, &pairs);
+            if best.is_none() && self.felt.tolerance >= LEAST_TOLERANCE {
+                // More iterations may show what the first ones leave open. Below, there were many.
+                let open = unions.par_iter_mut().filter(|(pair, _)| pairs.contains(pair));
+                open.filter_map(|(_, union)| union.as_mut()).for_each(|union| union.learn_more(&self.felt));
+                best = best_merge(&clusters, &unions, &pairs);
+            }
+            let Some((a, b)) = best else { break };
             let mut union = unions.remove(&(a, b)).flatten().expect("it is the best of these");
             if !self.is_one(&clusters[&a], &clusters[&b], &mut union) {
                 unions.insert((a, b), None);
@@ -150,12 +154,15 @@ impl Search {
         if !Cluster::have_common(a, b, union, tolerance) {
             return false;
         }
-        let is_explained =
-            |union: &Cluster| union.variance() <= EXPLAINED * tolerance || union.freedom <= 0.5;
-        if !is_explained(union) {
+        if !self.explains(union) {
             union.learn_more(&self.felt);
         }
-        is_explained(union)
+        self.explains(union)
+    }
+
+    /// Whether the motion of a cluster explains it, or whatever it feels.
+    pub(super) fn explains(&self, cluster: &Cluster) -> bool {
+        cluster.variance() <= EXPLAINED * self.felt.tolerance || cluster.freedom <= 0.5
     }
 
     /// Each cluster with those of highest affinity, on average.
@@ -260,6 +267,22 @@ impl Search {
         let saving = first.description_length + second.description_length - both.description_length;
         (saving <= MIN_SAVING).then(|| self.assigned(pieces, &cluster.sensors))
     }
+}
+
+/// The pair of clusters whose union saves most, if that is more than [`MIN_SAVING`].
+fn best_merge(
+    clusters: &BTreeMap<usize, Cluster>,
+    unions: &BTreeMap<(usize, usize), Option<Cluster>>,
+    pairs: &[(usize, usize)],
+) -> Option<(usize, usize)> {
+    let saving = |&(a, b): &(usize, usize)| {
+        let union = unions[&(a, b)].as_ref()?;
+        let both = clusters[&a].description_length + clusters[&b].description_length;
+        Some((both - union.description_length, (a, b)))
+    };
+    let best = pairs.iter().filter_map(saving);
+    let best = best.reduce(|best, other| if other.0 > best.0 { other } else { best });
+    best.filter(|(saving, _)| *saving > MIN_SAVING).map(|(_, pair)| pair)
 }
 
 /// The first of the smallest numbers, and its place.
