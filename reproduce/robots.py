@@ -24,7 +24,7 @@ try:
 except ModuleNotFoundError:
     sys.exit("robots: needs Python 3.11 or newer")
 
-from estimated import ROOT, TRUTH, downloaded, estimated, run, tried
+from estimated import ROOT, TRUTH, downloaded, estimated, fail, run, tried
 
 COLUMNS = ["robot", "kind", "use", "movement", "seed", "sensors", "fit", *TRUTH, "resolved", "unfelt",
            "either", "astray", "astray_either", "refused", "revision"]
@@ -98,8 +98,10 @@ def measured(file, folder, movement, design):
     """What `estimate` finds in how a robot feels a movement, compared with the truth; or why it is refused."""
     body, settings, felt = folder / "body.toml", folder / "settings.toml", folder / "felt"
     imported = tried("body", "import", file, "--sensors-per-part", design["sensors_per_part"], "--out", body)
-    if imported.returncode:
+    if imported.returncode == 2:
         return {"refused": imported.stderr.strip().splitlines()[-1].split(f"{file}: ")[-1]}
+    if imported.returncode:
+        fail(f"the import of {file} failed with status {imported.returncode}: {imported.stderr.strip()}")
     lines = [f"{table}.{key} = {json.dumps(value)}" for table, keys in movement["settings"].items() for key, value in keys.items()]
     settings.write_text("\n".join(lines) + "\n")
     words = ["--settings", settings, "--duration", design["duration"], "--seed", design["seed"], "--out", felt]

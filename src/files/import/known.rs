@@ -49,20 +49,20 @@ pub(super) const MJCF: [(&str, &str); 12] = [
     ("equality", "class active solref solimp"),
 ];
 
-/// Of URDF; `group` and `concave` are Bullet's.
+/// Of URDF; `group`, `mask` and `concave` are Bullet's, and `dont_collapse` is Isaac Gym's. Some write both halves of a tensor.
 pub(super) const URDF: [(&str, &str); 18] = [
-    ("link", "name type"),
-    ("joint", "name type"),
+    ("link", "name type concave"),
+    ("joint", "name type dont_collapse"),
     ("origin", "xyz rpy quat_xyzw"),
     ("parent", "link"),
     ("child", "link"),
     ("axis", "xyz"),
     ("inertial", ""),
     ("mass", "value"),
-    ("inertia", "ixx iyy izz ixy ixz iyz"),
-    ("collision", "name group concave"),
-    ("visual", "name"),
-    ("geometry", ""),
+    ("inertia", "ixx iyy izz ixy ixz iyz iyx izx izy"),
+    ("collision", "name group mask concave"),
+    ("visual", "name group"),
+    ("geometry", "name"),
     ("box", "size"),
     ("sphere", "radius"),
     ("cylinder", "radius length"),

@@ -16,7 +16,7 @@ const MIN_GROUP: usize = 2;
 /// the motion is.
 const MAX_TRIED: usize = 24;
 /// Share of the description of a group that its cluster saves if the group is where it belongs. What the ends of a cylinder share
-/// with its side saves 0.4 to 0.75 of it, and with another side −0.4 to 0.2.
+/// with its side saves 0.4 to 0.75 of it, and with another side −0.8 to 0.2.
 const SHARED: f64 = 0.4;
 
 /// Where a group costs less than in its cluster.
