@@ -1,7 +1,9 @@
-"""What the scripts share that estimate parts and tree of movements and robots of others: recordings.py and robots.py."""
+"""What the scripts share that count how often parts and tree are right: gaps.py, recordings.py and robots.py."""
 
+import csv
 import hashlib
 import json
+import math
 import pathlib
 import subprocess
 import sys
@@ -40,6 +42,22 @@ def estimated(felt, found, seed):
         "joints_right": truth["joints_right"],
         "tree_right": str(truth["tree_right"]).lower(),
     }
+
+
+def write(table, columns, rows):
+    """Write rows to a CSV file."""
+    with open(table, "w", newline="") as file:
+        writer = csv.DictWriter(file, columns, lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(rows)
+
+
+def interval(count, of):
+    """A count with the 95 % interval of its share (Wilson)."""
+    z = 1.96
+    middle, half = count + z * z / 2, z * math.sqrt(count * (of - count) / of + z * z / 4)
+    low, high = ((middle + sign * half) / (of + z * z) for sign in (-1, 1))
+    return f"{count} of {of} ({100 * low:.0f} to {100 * high:.0f} %)"
 
 
 def run(*words):

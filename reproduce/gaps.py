@@ -8,7 +8,6 @@ minutes on two cores; a run that was stopped continues. Status: 0, or 2 on an er
 
 import argparse
 import csv
-import math
 import pathlib
 import re
 import subprocess
@@ -20,7 +19,8 @@ try:
 except ModuleNotFoundError:
     sys.exit("gaps: needs NumPy")
 
-ROOT = pathlib.Path(__file__).resolve().parent.parent
+from estimated import PROGRAM, ROOT, interval, write
+
 BODIES, SEEDS = ["star", "tee", "quadruped"], range(4830001, 4830005)
 COLUMNS = ["revision", "body", "seed", "gaps", "missing", "sensors_left", "ari", "tree_right"]
 
@@ -86,33 +86,25 @@ def main():
         for seed in SEEDS:
             if not any((row["body"], row["seed"]) == (body, str(seed)) for row in rows):
                 rows += measured(body, seed)
-                write(part, rows)
+                write(part, COLUMNS, rows)
     part.replace(out / "gaps.csv")
     (out / "README.md").write_text(page(rows))
     return 0
 
 
-def write(table, rows):
-    with open(table, "w", newline="") as file:
-        writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(rows)
-
-
 def measured(body, seed):
     """What `estimate` finds under each condition."""
-    program = ROOT / "target" / "release" / "bodyschema"
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         (folder / "short.toml").write_text("[physics]\nduration = 1000.0\n")
-        run(program, "simulate", "--body", ROOT / "bodies" / f"{body}.toml", "--settings", folder / "short.toml", "--seed", seed,
+        run(PROGRAM, "simulate", "--body", ROOT / "bodies" / f"{body}.toml", "--settings", folder / "short.toml", "--seed", seed,
             "--out", folder / "moved")
         x = np.load(folder / "moved" / "tactile.npy")
         labels = np.genfromtxt(folder / "moved" / "labels.csv", delimiter=",", names=True)["part"].astype(int)
         for at, (condition, take) in enumerate(CONDITIONS.items()):
             random = np.random.default_rng([seed, at if "noise" not in condition else 0])
             np.save(folder / "own.npy", take(x, labels, random).astype(np.float32))
-            said = run(program, "estimate", folder / "own.npy", "--labels", folder / "moved" / "labels.csv", "--tree",
+            said = run(PROGRAM, "estimate", folder / "own.npy", "--labels", folder / "moved" / "labels.csv", "--tree",
                        folder / "moved" / "tree.csv", "--out", folder / "found", "--force")
             ari, tree = re.search(r"adjusted Rand index (\S+), true tree (recovered|not recovered)", said).groups()
             summary = (folder / "found" / "summary.json").read_text()
@@ -157,14 +149,6 @@ def page(rows):
         lines.append(f"| {condition} | {100 * mean('missing'):.1f} % | {mean('sensors_left'):.0f} | {sum(aris) / len(aris):.3f} "
                      f"({min(aris):.3f}) | {interval(right, len(own))} | {interval(trees, len(own))} |")
     return "\n".join(lines) + "\n"
-
-
-def interval(count, of):
-    """A count with its share, and the 95 % interval of the share."""
-    z = 1.96
-    middle, half = count + z * z / 2, z * math.sqrt(count * (of - count) / of + z * z / 4)
-    low, high = ((middle + sign * half) / (of + z * z) for sign in (-1, 1))
-    return f"{count} of {of} ({100 * low:.0f} to {100 * high:.0f} %)"
 
 
 if __name__ == "__main__":

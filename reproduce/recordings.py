@@ -8,7 +8,6 @@ Takes about six minutes on two cores. Status: 0, or 2 on an error.
 """
 
 import argparse
-import csv
 import pathlib
 import sys
 import tempfile
@@ -18,7 +17,7 @@ try:
 except ModuleNotFoundError:
     sys.exit("recordings: needs Python 3.11 or newer")
 
-from estimated import ROOT, TRUTH, downloaded, estimated, run
+from estimated import ROOT, TRUTH, downloaded, estimated, run, write
 
 COLUMNS = ["recording", "use", "samples", "sensors", "fit", *TRUTH]
 
@@ -37,10 +36,7 @@ def main():
             rows.append({"recording": recording["name"], "use": recording["use"], **measured(file, pathlib.Path(folder), design)})
         print(" ".join(str(rows[-1][column]) for column in COLUMNS), flush=True)
     arguments.out.mkdir(parents=True, exist_ok=True)
-    with open(arguments.out / "recordings.csv", "w", newline="") as table:
-        writer = csv.DictWriter(table, COLUMNS, lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(rows)
+    write(arguments.out / "recordings.csv", COLUMNS, rows)
     (arguments.out / "README.md").write_text(page(rows, design))
     return 0
 

@@ -24,7 +24,7 @@ try:
 except ModuleNotFoundError:
     sys.exit("robots: needs Python 3.11 or newer")
 
-from estimated import ROOT, TRUTH, downloaded, estimated, fail, run, tried
+from estimated import ROOT, TRUTH, downloaded, estimated, fail, interval, run, tried, write
 
 COLUMNS = ["robot", "kind", "use", "movement", "seed", "sensors", "fit", *TRUTH, "resolved", "unfelt",
            "either", "astray", "astray_either", "refused", "revision"]
@@ -61,7 +61,7 @@ def main():
                     keep(folder, arguments.keep / f"{robot['name']}, {movement['name']}")
             rows.append({column: str(row.get(column, "")) for column in COLUMNS})
             print(" ".join(value for value in rows[-1].values() if value), flush=True)
-            write(table, rows)
+            write(table, COLUMNS, rows)
     (arguments.out / "README.md").write_text(page(rows, design))
     return 0
 
@@ -72,13 +72,6 @@ def place(robot, files):
 
 def read(table):
     return list(csv.DictReader(table.read_text().splitlines()))
-
-
-def write(table, rows):
-    with open(table, "w", newline="") as file:
-        writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(rows)
 
 
 def keep(folder, kept):
@@ -337,12 +330,8 @@ def page(rows, design):
 
 
 def right(rows):
-    """How many trees are right, and the 95 % interval (Wilson)."""
-    n, k, z = len(rows), sum(row["tree_right"] == "true" for row in rows), 1.96
-    if not n:
-        return "–"
-    middle, half = k + z * z / 2, z * math.sqrt(k * (n - k) / n + z * z / 4)
-    return f"{k} of {n} ({100 * (middle - half) / (n + z * z):.0f} to {100 * (middle + half) / (n + z * z):.0f} %)"
+    """How many trees are right, and the 95 % interval."""
+    return interval(sum(row["tree_right"] == "true" for row in rows), len(rows)) if rows else "–"
 
 
 def tree(row):
