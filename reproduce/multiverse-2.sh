@@ -1,16 +1,16 @@
 #!/usr/bin/env bash
 # The multiverse that contains today's default: multiverse-2.toml, its surroundings (-near) and held-out movements (-held-out).
-# Takes some 15 core-hours, in shards of four movements. Stop it at any time, and run it again: what is finished is not run again, and
+# Takes some 12 core-hours, in shards of four movements. Stop it at any time, and run it again: what is finished is not run again, and
 # of the rest at most one movement for each thread is lost. The shards finished so far are at any time an even sample of the design.
 #
 #   reproduce/multiverse-2.sh            # runs what is left
 #   reproduce/multiverse-2.sh status     # how many shards are finished
 #   reproduce/multiverse-2.sh save       # keeps the tables of finished shards in docs/shown/multiverse-2/shards, to be committed
 #   reproduce/multiverse-2.sh restore    # takes them from there: to continue on another machine
-#   reproduce/multiverse-2.sh gather     # page, pictures and tables of all finished shards
+#   reproduce/multiverse-2.sh gather     # tables and pictures of all finished shards; multiverse-2.py makes the page of them
 #
 # OUT is the folder of results (results/multiverse-2), PROGRAM the program (target/release/bodyschema; built if it is missing), and
-# JOBS the number of threads (2).
+# JOBS the number of threads (2). Each shard takes some 15 minutes on two idle cores.
 set -euo pipefail
 root=$(CDPATH= cd -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")/.." && pwd)
 out=${OUT:-$root/results/multiverse-2}

@@ -1,0 +1,138 @@
+"""The page of the multiverse, reproduce/multiverse-2.py: its surrogate, its intervals, and what its explorer predicts."""
+
+import csv
+import gzip
+import importlib.util
+import json
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+pytest.importorskip("sklearn")
+pytest.importorskip("matplotlib")
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+SHARDS = ROOT / "docs/shown/multiverse-2/shards"
+sys.path.insert(0, str(ROOT / "reproduce"))
+
+import surrogate  # noqa: E402
+
+
+@pytest.fixture(scope="module")
+def page():
+    spec = importlib.util.spec_from_file_location("multiverse", ROOT / "reproduce/multiverse-2.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.fixture(scope="module")
+def part(page, tmp_path_factory):
+    """The first shard of the committed ones."""
+    folder = tmp_path_factory.mktemp("gathered")
+    for file in (SHARDS / "multiverse-2/movements-01-04").glob("*.gz"):
+        (folder / file.stem).write_bytes(gzip.decompress(file.read_bytes()))
+    return page.Part(folder)
+
+
+def made_up(movements, seed):
+    """Codes of seven factors, the first two of which are shared within a movement, and values: two factors, one pair, and chance."""
+    random = np.random.default_rng(seed)
+    shared = np.repeat(random.integers(3, size=(movements, 2)), 12, axis=0)
+    codes = np.concatenate([shared, random.integers(3, size=(12 * movements, 5))], axis=1)
+    exact = 2.0 * (codes[:, 2] == 1) + 1.0 * codes[:, 0] + 2.0 * ((codes[:, 3] == 0) & (codes[:, 4] == 2))
+    return codes, exact, exact + random.normal(0, 0.3, len(codes)), np.repeat(np.arange(movements), 12)
+
+
+def test_the_surrogate_predicts_movements_that_it_has_not_seen():
+    codes, _, values, movements = made_up(40, 1)
+    found = surrogate.Chosen(codes, values, movements, 0)
+    other, exact, _, _ = made_up(40, 2)
+    left = ((exact - found.surrogate.predict(other)) ** 2).mean() / exact.var()
+    assert left < 0.05 and found.pairs > 0, "it has the pair"
+    inside = (np.abs(made_up(40, 2)[2] - found.surrogate.predict(other)) <= found.half_width()).mean()
+    assert 0.85 < inside < 0.95
+
+
+def test_the_surrogate_finds_nothing_in_chance():
+    codes, _, values, movements = made_up(40, 3)
+    shuffled = np.random.default_rng(0).permutation(values)
+    assert surrogate.Chosen(codes, shuffled, movements, 0).error > 0.95
+
+
+def test_knowing_a_factor_takes_away_its_share_of_the_variance():
+    codes, exact, values, _ = made_up(200, 4)
+    fitted = surrogate.Surrogate(codes, values, 0.5, 0.1)
+    weights = [np.full(3, 1 / 3)] * 7
+    # Variances of the means: of an indicator of 1/3 times 2, of 0, 1, 2, and half of the pair's, for each of its factors.
+    expected = [2 / 3, 0, 4 * 2 / 9, 4 / 9 * 2 / 9, 4 / 9 * 2 / 9, 0, 0]
+    assert surrogate.knowing(fitted, codes[::4], weights) == pytest.approx(expected, abs=0.04)
+
+
+def test_an_overridden_choice_agrees_with_nothing():
+    none = surrogate.OVERRIDDEN
+    assert surrogate.kernel(np.array([[none, 1]]), np.array([[none, 1], [0, 1]]), 0.0).tolist() == [[0.5, 0.5]]
+
+
+def test_intervals_of_shares_hold_the_truth(page):
+    """Movements differ, so an interval as of independent configurations would be far too narrow."""
+    random = np.random.default_rng(5)
+    inside = 0
+    for _ in range(60):
+        rates = random.beta(1, 2, size=30)
+        holds = random.random((30, 8)) < rates[:, None]
+        _, low, high = page.share(holds.ravel(), np.repeat(np.arange(30), 8))
+        inside += low <= 1 / 3 <= high
+    assert inside >= 52, "with 95 %, it is less in one of 100 runs"
+    assert page.share(np.zeros(8, bool), np.arange(8))[2] > 0.3, "none of eight is not zero"
+
+
+def test_the_default_is_a_point_of_the_space(part, page):
+    chosen = {name: labels[at] for name, labels, at in zip(part.factors, part.labels, page.default(part))}
+    assert chosen["fluid"] == "pushes back, 1010" and chosen["prior scatter"] == "0.5 x covariance / K^(2/d)"
+    assert chosen["sweeps"] == "300" and chosen["number of levels"] == "8" and chosen["controller"] == "slow servo"
+
+
+def test_the_authors_code_overrides_the_prior(part, page):
+    reading = part.factors.index("reading")
+    equations, code, _ = page.overrides(part)[reading]
+    assert equations == [] and part.factors.index("prior scatter") in code and part.factors.index("fluid") not in code
+    rows = part.codes[part.codes[:, reading] == 1]
+    assert len(rows) and (rows[:, code] == surrogate.OVERRIDDEN).all()
+
+
+def test_the_explorer_predicts_what_the_surrogate_predicts(part, page, tmp_path):
+    if not shutil.which("chromium"):
+        pytest.skip("chromium is missing")
+    chosen = page.surrogates(part)
+    text = page.explorer(chosen, part)
+    (tmp_path / "explorer.html").write_text(text)
+    command = ["chromium", "--headless", "--no-sandbox", "--disable-dev-shm-usage", f"--user-data-dir={tmp_path / 'chromium'}",
+               "--dump-dom", (tmp_path / "explorer.html").as_uri()]
+    seen = subprocess.run(command, capture_output=True, text=True, check=True, timeout=120).stdout
+    body = re.search(r'<tbody id="predicted">(.*?)</tbody>', seen, re.S)[1]
+    rows = [re.findall(r"<t[hd][^>]*>(.*?)</t[hd]>", row) for row in body.split("</tr>") if row]
+    assert [row[0] for row in rows] == list(page.CLAIMS.values())
+    usual = np.array([page.default(part)])
+    parts = rows[list(page.CLAIMS).index("number-of-parts")]
+    _, _, fitted = chosen["number-of-parts", "value"]
+    # Its weights have four digits.
+    assert float(parts[2].split()[0]) == pytest.approx(fitted.surrogate.predict(usual)[0], abs=0.02)
+    judged = float(rows[0][1].removesuffix(" %"))
+    _, _, fitted = chosen["tree-accuracy", "can be judged"]
+    assert judged == pytest.approx(100 * fitted.surrogate.predict(usual)[0].clip(0, 1), abs=1)
+
+
+def test_the_page_is_of_the_committed_shards():
+    """Whoever adds a shard makes the page again."""
+    shares = SHARDS.parent / "shares.csv"
+    counted = {row["part"]: int(row["n"]) for row in csv.DictReader(shares.open()) if row["group"] == "all"}
+    for name in ("multiverse-2", "multiverse-2-near", "multiverse-2-held-out"):
+        tables = sorted((SHARDS / name).glob("*/configurations.csv.gz"))
+        assert counted.get(name, 0) == sum(len(list(csv.DictReader(gzip.open(table, "rt")))) for table in tables), name
+    data = json.loads(re.search(r"const data = (.*);\n", (SHARDS.parent / "explorer.html").read_text())[1])
+    assert len(data["codes"]) == counted["multiverse-2"]

@@ -1,0 +1,564 @@
+#!/usr/bin/env python3
+"""The page of the multiverse: reproduce/multiverse-2.py [FOLDER] [--out FOLDER]
+
+FOLDER holds what `reproduce/multiverse-2.sh gather` makes (default: results/multiverse-2/gathered). Writes into the folder of --out, which
+is docs/shown/multiverse-2: README.md, its tables and pictures, and explorer.html, which predicts what a choice of settings would give.
+Needs Python 3.11 and the packages of python/requirements.txt. Takes some minutes. Status: 0, or 2 on an error.
+"""
+
+import argparse
+import csv
+import json
+import math
+import pathlib
+import shutil
+import sys
+import textwrap
+import tomllib
+
+try:
+    import matplotlib
+    import numpy as np
+    from surrogate import OVERRIDDEN, Chosen, Surrogate, knowing
+except ModuleNotFoundError as missing:
+    sys.exit(f"multiverse-2: needs {missing.name}; run: pip install -r python/requirements.txt")
+
+from estimated import ROOT, fail, write
+
+SEED = 6700000
+# What is said of several claims together: the two sides of the dependence on d, and of that on p.
+TOGETHER = {
+    "dependence on d": ["tree-low-dimensions", "tree-high-dimensions"],
+    "dependence on p": ["tree-random-movement", "best-coordination"],
+}
+HEADLINE = "tree-accuracy"
+# In the order of the page.
+CLAIMS = {
+    "tree-accuracy": "the headline: tree accuracy at p = 0.9, d = 14",
+    "tree-low-dimensions": "no tree at d of 8 and below",
+    "tree-high-dimensions": "the tree at each d from 9 on",
+    "first-dimension": "the tree from about d = 9 on",
+    "tree-random-movement": "no tree at p of 0.4 and below",
+    "best-coordination": "p = 0.9 is best",
+    "baseline-tree": "DPGMM + Prim never finds the tree",
+    "number-of-parts": "slightly more than five parts at each d",
+    "ari-unknown-number": "ARI above 0.8 at each d",
+    "ari-over-coordination": "ARI above 0.8 at each p but 1",
+}
+PERCENT = {"tree-accuracy", "tree-low-dimensions", "tree-high-dimensions", "tree-random-movement", "baseline-tree"}
+# What the authors are to be asked about: each of these answers counts the same, whatever the number of its claims.
+ANSWERS = {
+    "whether a tree can be judged": [(HEADLINE, "can be judged")],
+    "the headline": [(HEADLINE, "value")],
+    "dependence on d": [("tree-low-dimensions", "value"), ("tree-high-dimensions", "value")],
+    "dependence on p": [("tree-random-movement", "value"), ("best-coordination", "value")],
+    "parts": [("number-of-parts", "value"), ("ari-unknown-number", "value"), ("ari-over-coordination", "value")],
+}
+# Movements of the three parts.
+MOVEMENTS = (64, 16, 20)
+# Groups of movements that the jackknife leaves out, one after the other.
+GROUPS = 16
+# Numbers of choices that differ from the default, for the table of the surroundings.
+DISTANCES = [(0, 2), (3, 5), (6, 8), (9, 99)]
+
+
+def main():
+    parser = argparse.ArgumentParser(description="Make the page of the multiverse.")
+    parser.add_argument("folder", nargs="?", type=pathlib.Path, default=ROOT / "results" / "multiverse-2" / "gathered")
+    parser.add_argument("--out", type=pathlib.Path, default=ROOT / "docs" / "shown" / "multiverse-2")
+    arguments = parser.parse_args()
+    parts = {name: Part(arguments.folder / name) for name in ("multiverse-2", "multiverse-2-near", "multiverse-2-held-out")}
+    whole, near, held_out = parts.values()
+    if not len(whole):
+        fail(f"{arguments.folder}: has no multiverse-2; run reproduce/multiverse-2.sh gather first")
+    arguments.out.mkdir(parents=True, exist_ok=True)
+    shares = [row for name, part in parts.items() if len(part) for row in shares_of(name, part)]
+    write(arguments.out / "shares.csv", list(shares[0]), shares)
+    chosen = surrogates(whole)
+    errors = errors_of(chosen, whole, held_out)
+    write(arguments.out / "surrogate.csv", list(errors[0]), errors)
+    questions = questions_of(chosen, whole)
+    write(arguments.out / "questions.csv", list(questions[0]), questions)
+    deciding = [row["factor"] for row in questions[:3]]
+    choices = [row for factor in deciding for row in by_option(whole, factor)]
+    write(arguments.out / "choices.csv", list(choices[0]), choices)
+    around = by_distance(near) if len(near) else []
+    if around:
+        write(arguments.out / "near.csv", list(around[0]), around)
+    picture(arguments.out / "shares.svg", [row for row in shares if row["part"] == "multiverse-2" and row["group"] == "all"])
+    for name in ("variance.csv", "joint.csv"):
+        shutil.copy(arguments.folder / "multiverse-2" / name, arguments.out / name)
+    shutil.copy(arguments.folder / "multiverse-2" / "figures" / "tree-accuracy.svg", arguments.out / "tree-accuracy.svg")
+    (arguments.out / "explorer.html").write_text(explorer(chosen, whole))
+    (arguments.out / "README.md").write_text(page(parts, shares, choices, around, questions, errors))
+
+
+class Part:
+    """The configurations of one design, and what each gave: arrays with one entry for each, in the order of their numbers."""
+
+    def __init__(self, folder):
+        self.factors, self.rows = [], []
+        if not folder.is_dir():
+            return
+        self.design = tomllib.loads((folder / "design.toml").read_text())
+        if "extends" in self.design:
+            base = tomllib.loads((ROOT / "reproduce" / self.design["extends"]).read_text())
+            self.design = {**base, **self.design}
+        self.factors = [factor["name"] for factor in self.design["factor"]]
+        self.labels = [[option["label"] for option in factor["option"]] for factor in self.design["factor"]]
+        # How likely each option is drawn.
+        weights = [np.array([option.get("weight", 1) for option in factor["option"]], float) for factor in self.design["factor"]]
+        self.weights = [own / own.sum() for own in weights]
+        self.rows = read(folder / "configurations.csv")
+        self.movements = np.array([int(row["movement"]) for row in self.rows])
+        self.resolved = np.array([row["resolved"] == "true" for row in self.rows])
+        self.codes = np.array([[self.code(at, row[factor]) for at, factor in enumerate(self.factors)] for row in self.rows])
+        self.values, self.holds, self.judged, self.ends, self.accepted = {}, {}, {}, {}, {}
+        claims = read(folder / "study.csv")
+        for claim in CLAIMS:
+            own = [row for row in claims if row["claim"] == claim]
+            self.values[claim] = np.array([float(row["value"] or "nan") for row in own])
+            self.judged[claim] = np.array([row["verdict"] != "not testable" for row in own])
+            self.holds[claim] = np.array([row["verdict"] == "reproduced" for row in own])
+            self.ends[claim] = [(float(row["low"]), float(row["high"])) if row["low"] else None for row in own]
+            self.accepted[claim] = (float(own[0]["accepted_low"]), float(own[0]["accepted_high"]))
+        for name, claims in TOGETHER.items():
+            self.judged[name] = np.all([self.judged[claim] for claim in claims], axis=0)
+            self.holds[name] = np.all([self.holds[claim] for claim in claims], axis=0)
+
+    def __len__(self):
+        return len(self.rows)
+
+    def code(self, at, label):
+        return self.labels[at].index(label) if label else OVERRIDDEN
+
+
+def read(file):
+    with open(file, newline="") as rows:
+        return list(csv.DictReader(rows))
+
+
+# ---- Shares
+
+
+def share(holds, movements):
+    """A share with its 95 % interval over resamples of the movements, and of the configurations of each; never narrower than Wilson's
+    interval for as many trials as there are movements."""
+    if not len(holds):
+        return None, None, None
+    random = np.random.default_rng(SEED)
+    clusters = [holds[movements == one] for one in np.unique(movements)]
+    found = []
+    for _ in range(2000):
+        drawn = [clusters[at] for at in random.integers(len(clusters), size=len(clusters))]
+        resampled = [one[random.integers(len(one), size=len(one))] for one in drawn]
+        found.append(sum(one.sum() for one in resampled) / sum(map(len, resampled)))
+    middle, n, z = holds.mean(), len(clusters), 1.96
+    centre, half = middle * n + z * z / 2, z * math.sqrt(n * middle * (1 - middle) + z * z / 4)
+    low, high = (max(0.0, (centre + sign * half) / (n + z * z)) for sign in (-1, 1))
+    return middle, min(low, np.quantile(found, 0.025)), max(high, np.quantile(found, 0.975))
+
+
+def row_of(part, keep, claim):
+    """In what share of some configurations a claim can be judged, and in what share of these it holds."""
+    judged = part.judged[claim] & keep
+    holds, movements = part.holds[claim][judged], part.movements[judged]
+    middle, low, high = share(holds, movements)
+    return {
+        "claim": claim, "n": int(keep.sum()), "judged": int(judged.sum()), "movements": len(set(movements)), "holds": int(holds.sum()),
+        "share": rounded(middle), "low": rounded(low), "high": rounded(high),
+    }
+
+
+def rounded(value):
+    return "" if value is None else f"{value:.4f}"
+
+
+def shares_of(name, part):
+    groups = {"all": np.full(len(part), True), "resolved": part.resolved}
+    at = part.factors.index("ARI of 1.00")
+    for option, label in enumerate(part.labels[at]):
+        groups[f"ARI of 1.00: {label}"] = part.codes[:, at] == option
+    return [{"part": name, "group": group, **row_of(part, keep, claim)}
+            for group, keep in groups.items() for claim in [*CLAIMS, *TOGETHER]]
+
+
+def by_option(part, factor):
+    """The shares with each option of a factor."""
+    at = part.factors.index(factor)
+    return [{"factor": factor, "option": label, **row_of(part, part.codes[:, at] == option, claim)}
+            for option, label in enumerate(part.labels[at]) for claim in [HEADLINE, *TOGETHER]]
+
+
+def by_distance(part):
+    """The shares by the number of choices that differ from the default's."""
+    usual = np.array(default(part))
+    applies = part.codes != OVERRIDDEN
+    differ = ((part.codes != usual) & applies).sum(axis=1)
+    return [{"least": least, "most": most, **row_of(part, (least <= differ) & (differ <= most), claim)}
+            for least, most in DISTANCES for claim in [HEADLINE, *TOGETHER]]
+
+
+def default(part):
+    """The option of each factor that paper.toml has."""
+    settings = dict(flat(tomllib.loads((ROOT / "reproduce" / "paper.toml").read_text())))
+    found = []
+    for factor in part.design["factor"]:
+        same = [all(settings[key] == value for key, value in flat(option.get("settings", {}))) and "settings" in option
+                for option in factor["option"]]
+        found.append(same.index(True))
+    return found
+
+
+def flat(table, path=""):
+    for key, value in table.items():
+        if isinstance(value, dict):
+            yield from flat(value, f"{path}{key}.")
+        else:
+            yield f"{path}{key}", value
+
+
+# ---- The surrogate
+
+
+def targets(part):
+    """What is predicted: of each claim its value where there is one, and whether it can be judged where this differs."""
+    for claim in CLAIMS:
+        has = ~np.isnan(part.values[claim])
+        if part.judged[claim].any() and not part.judged[claim].all():
+            yield claim, "can be judged", np.arange(len(part)), part.judged[claim].astype(float)
+        if has.sum() >= 40 and len(set(part.movements[has])) >= 4 and np.ptp(part.values[claim][has]):
+            yield claim, "value", np.flatnonzero(has), part.values[claim][has]
+
+
+def surrogates(part):
+    return {(claim, what): (rows, values, Chosen(part.codes[rows], values, part.movements[rows], SEED))
+            for claim, what, rows, values in targets(part)}
+
+
+def errors_of(chosen, part, held_out):
+    """How much of the variance the surrogate leaves: in cross-validation over movements, and in the held-out movements."""
+    rows = []
+    for (claim, what), (own, values, one) in chosen.items():
+        row = {"claim": claim, "predicts": what, "n": len(values), "movements": len(set(part.movements[own])),
+               "pairs": one.pairs, "penalty": one.penalty, "standard_deviation": f"{values.std():.4f}",
+               "left": f"{one.error:.4f}", "left_by_forest": f"{one.forest:.4f}", "half_width_90": f"{one.half_width():.4f}",
+               "held_out_n": "", "held_out_left": "", "held_out_inside": ""}
+        if len(held_out):
+            has = np.full(len(held_out), True) if what == "can be judged" else ~np.isnan(held_out.values[claim])
+            truth = (held_out.judged[claim].astype(float) if what == "can be judged" else held_out.values[claim])[has]
+            if len(truth) > 1 and np.ptp(truth):
+                found = one.surrogate.predict(held_out.codes[has])
+                left = ((truth - found) ** 2).sum() / ((truth - values.mean()) ** 2).sum()
+                inside = (np.abs(truth - found) <= one.half_width()).mean()
+                row |= {"held_out_n": len(truth), "held_out_left": f"{left:.4f}", "held_out_inside": f"{inside:.4f}"}
+        rows.append(row)
+    return rows
+
+
+def questions_of(chosen, part):
+    """What would narrow the answers most, if it were known: by factor the share of each answer's variance that knowing it would take
+    away, the mean over the answers first. Intervals are by the jackknife over groups of movements."""
+    movements = np.unique(part.movements)
+    groups = np.searchsorted(movements, part.movements) % min(GROUPS, len(movements))
+    asked = {name: [chosen[one] for one in claims if one in chosen] for name, claims in ANSWERS.items()}
+    asked = {name: found for name, found in asked.items() if found}
+
+    def shares(keep):
+        """By answer, then by factor."""
+        return {name: np.mean([taken(part, keep, *one) for one in found], axis=0) for name, found in asked.items()}
+
+    def with_mean(found):
+        return {"all": np.mean(list(found.values()), axis=0), **found}
+
+    everything = with_mean(shares(np.full(len(part), True)))
+    left_out = [with_mean(shares(groups != one)) for one in sorted(set(groups))]
+    rows = []
+    for at, factor in enumerate(part.factors):
+        row = {"factor": factor}
+        for name, found in everything.items():
+            row |= ends(name, found[at], [one[name][at] for one in left_out])
+        rows.append(row)
+    return sorted(rows, key=lambda row: -float(row["all"]))
+
+
+def taken(part, keep, rows, values, one):
+    """The share of the variance of some values that knowing each factor would take away, by a surrogate of those that are kept."""
+    own = keep[rows]
+    codes = part.codes[rows][own]
+    surrogate = Surrogate(codes, values[own], one.pairs, one.penalty)
+    return knowing(surrogate, codes[:: max(1, len(codes) // 400)], part.weights) / values.var()
+
+
+def ends(name, value, left_out):
+    """A value with its 95 % interval by the jackknife, not below 0."""
+    count = len(left_out)
+    spread = math.sqrt((count - 1) / count * sum((one - np.mean(left_out)) ** 2 for one in left_out))
+    low, high = max(0.0, value - 1.96 * spread), value + 1.96 * spread
+    return {name: rounded(value), f"{name}_low": rounded(low), f"{name}_high": rounded(high)}
+
+
+def explorer(chosen, part):
+    """The page that predicts: the template with the configurations, what they gave, and the weights of the surrogates."""
+    published = {claim["id"]: claim for claim in tomllib.loads((ROOT / "reproduce" / "published.toml").read_text())["claim"]}
+    data = {
+        "factors": [{"name": name, "options": labels} for name, labels in zip(part.factors, part.labels)],
+        "default": default(part),
+        "overrides": overrides(part),
+        "codes": ["".join("-" if code == OVERRIDDEN else str(code) for code in codes) for codes in part.codes],
+        "names": [int(row["configuration"]) for row in part.rows],
+        "claims": [
+            {
+                "id": claim, "name": name, "published": published[claim].get("wording", ""), "percent": claim in PERCENT,
+                "accepted": part.accepted[claim],
+                "values": [None if math.isnan(value) else float(f"{value:.4g}") for value in part.values[claim]],
+                "judged": model(chosen.get((claim, "can be judged"))),
+                "value": model(chosen.get((claim, "value"))),
+            }
+            for claim, name in CLAIMS.items()
+        ],
+    }
+    template = (ROOT / "reproduce" / "explorer.html").read_text()
+    return template.replace("/* DATA */", json.dumps(data, separators=(",", ":")))
+
+
+def overrides(part):
+    """For each factor and option the factors that it overrides."""
+    factors = part.design["factor"]
+    keys = [[set(key for key, _ in flat(option.get("settings", {}))) for option in factor["option"]] for factor in factors]
+    return [[[other for other in range(at) if keys[other][0] and keys[other][0] <= own] for own in options]
+            for at, options in enumerate(keys)]
+
+
+def model(found):
+    if found is None:
+        return None
+    rows, _, one = found
+    return {
+        "rows": [int(row) for row in rows], "weights": [float(f"{weight:.4g}") for weight in one.surrogate.weights],
+        "constant": float(f"{one.surrogate.constant:.6g}"), "pairs": one.pairs, "half": float(f"{one.half_width():.4g}"),
+        "left": float(f"{one.error:.3g}"),
+    }
+
+
+# ---- The page
+
+
+def picture(file, rows):
+    """For each claim the shares of the configurations that cannot judge it, in which it fails, and in which it holds."""
+    matplotlib.use("svg")
+    from matplotlib import pyplot
+
+    matplotlib.rcParams |= {"svg.hashsalt": "multiverse", "svg.fonttype": "none", "font.family": "sans-serif"}
+    names = [label(row["claim"]) for row in rows]
+    parts = [
+        ("holds", "#1b7837", [row["holds"] / row["n"] for row in rows]),
+        ("does not hold", "#b2182b", [(row["judged"] - row["holds"]) / row["n"] for row in rows]),
+        ("cannot be judged", "#d9d9d9", [1 - row["judged"] / row["n"] for row in rows]),
+    ]
+    figure, axes = pyplot.subplots(figsize=(9, 0.42 * len(rows) + 1), layout="constrained")
+    left = np.zeros(len(rows))
+    for name, colour, widths in parts:
+        axes.barh(names, 100 * np.array(widths), left=left, color=colour, label=name)
+        left += 100 * np.array(widths)
+    axes.invert_yaxis()
+    axes.set(xlim=(0, 100), xlabel=f"share of {rows[0]['n']} configurations, %")
+    axes.legend(ncols=3, loc="lower center", bbox_to_anchor=(0.4, 1), frameon=False)
+    axes.spines[["top", "right"]].set_visible(False)
+    figure.savefig(file, metadata={"Date": None})
+    pyplot.close(figure)
+
+
+def label(claim):
+    return CLAIMS.get(claim, claim)
+
+
+def percent(value):
+    return "–" if value in (None, "") else f"{100 * float(value):.0f} %"
+
+
+def with_ends(row, name="share"):
+    """A share in percent with its interval, from columns `name` or, of shares, `low` and `high`."""
+    low, high = (("low", "high") if name == "share" else (f"{name}_low", f"{name}_high"))
+    if not row[name]:
+        return "–"
+    return f"{100 * float(row[name]):.0f} % ({100 * float(row[low]):.0f} to {100 * float(row[high]):.0f})"
+
+
+def table(header, rows):
+    return ["| " + " | ".join(header) + " |", "|" + "---|" * len(header),
+            *("| " + " | ".join(str(cell) for cell in row) + " |" for row in rows)]
+
+
+def page(parts, shares, choices, around, questions, errors):
+    whole, near, held_out = parts.values()
+    of = {(row["part"], row["group"], row["claim"]): row for row in shares}
+    own = lambda claim, group="all": of["multiverse-2", group, claim]
+    headline = own(HEADLINE)
+    lines = ["# A multiverse that contains today's default", "", *answer(own, questions)]
+    lines += [
+        "",
+        "![Shares of the claims](shares.svg)",
+        "",
+        progress(parts),
+        "",
+        "A *configuration* takes one reasonable value for each setting that the paper leaves open, and each is a small replication of its own:",
+        f"four simulations with six chains each, seven d and five p. Each of these {headline['n'] // 2:,} replications is counted twice: an ARI of",
+        "1.00 may be exactly 1, or 0.995 and more. [multiverse-2.toml](../../../reproduce/multiverse-2.toml) has all values, and the",
+        "reason for each. It was written before the first run. A claim about trees *can be judged* if samples are eligible: right number of",
+        "parts, and an adjusted Rand index (ARI) of 1. Intervals are 95 % intervals over movements.",
+        "",
+        "    reproduce/multiverse-2.sh            # runs what is left",
+        "    reproduce/multiverse-2.sh gather",
+        "    python3 reproduce/multiverse-2.py    # this page",
+        "",
+        "## In what share does each claim hold?",
+        "",
+        "The last two columns count only configurations that can judge the claim; the last one only those whose movements the time step",
+        "resolves. All groups, and both meanings of an ARI of 1.00: [shares.csv](shares.csv).",
+        "",
+        *table(["claim", "n", "can be judged", "holds, of those judged", "the same, resolved"],
+               [[label(claim), f"{own(claim)['n']:,}", f"{own(claim)['judged']:,} ({percent(own(claim)['judged'] / own(claim)['n'])})",
+                 with_ends(own(claim)), with_ends(own(claim, "resolved"))] for claim in [*CLAIMS, *TOGETHER]]),
+        "",
+        "## What does it depend on?",
+        "",
+        "These are the choices that matter most, by the [table below](#what-to-ask-the-authors). Shares are of the configurations that can",
+        "judge the claim, and the number of these stands before them. All: [choices.csv](choices.csv).",
+        "",
+        *table(["choice", "n", HEADLINE.replace("-", " "), *TOGETHER], by_choice(choices)),
+        "",
+        "How much each choice and each pair of choices decides of the variance of a claim, by a linear model:",
+        "[variance.csv](variance.csv).",
+        "",
+        "## Where does the published number lie?",
+        "",
+        *distribution(whole),
+        "",
+        "![Specification curve of the tree accuracy](tree-accuracy.svg)",
+        "",
+        "## How far from the default?",
+        "",
+    ]
+    if around:
+        lines += [
+            f"The {len(near)} configurations of [multiverse-2-near.toml](../../../reproduce/multiverse-2-near.toml) stay near today's default. They",
+            "differ from it in the number of choices in the first column. Shares are as above. All: [near.csv](near.csv).",
+            "",
+            *table(["choices that differ", "n", HEADLINE.replace("-", " "), *TOGETHER], by_choice(around, distance_of)),
+        ]
+    else:
+        lines += ["The configurations near the default have not been run yet."]
+    lines += [
+        "",
+        "## What to ask the authors",
+        "",
+        "If the authors told one setting, how much would the answers narrow? The table has the share of the variance that knowing a setting",
+        "would take away (Sobol's first-order index of the surrogate below), and their mean over the five answers. Intervals are by the",
+        f"jackknife over {min(GROUPS, len(set(whole.movements)))} groups of movements. The surrogate shrinks what it is unsure of, so shares are rather",
+        "too small than too large. All: [questions.csv](questions.csv).",
+        "",
+        *ranking(questions),
+        "",
+        "## The surrogate",
+        "",
+        "The surrogate predicts a claim's value, or whether it can be judged, from the choices: ridge regression on all single choices and all",
+        "pairs ([surrogate.py](../../../reproduce/surrogate.py)). It is tested on movements that it has not seen (cross-validation) and on the",
+        "configurations of [multiverse-2-held-out.toml](../../../reproduce/multiverse-2-held-out.toml), to which nothing is fitted. *Explained* is the",
+        "share of the variance; below 0, the mean would predict better. All: [surrogate.csv](surrogate.csv).",
+        "",
+        *table(["claim", "predicts", "n", "explained", "by a random forest", "held out: n", "held out: explained", "inside its 90 % interval"],
+               [[label(row["claim"]), row["predicts"], f"{row['n']:,}", explained(row["left"]), explained(row["left_by_forest"]),
+                 row["held_out_n"] or "–", explained(row["held_out_left"]), percent(row["held_out_inside"])] for row in errors]),
+        "",
+        "[explorer.html](explorer.html) shows what it predicts for any choice, and the nearest configurations that were run. It is one file and",
+        "needs no network.",
+    ]
+    return wrapped(lines)
+
+
+def wrapped(lines):
+    """The text, its paragraphs in lines of at most 130 characters."""
+    blocks, text = [], []
+    for line in [*lines, ""]:
+        if line and line[0] not in "#|! ":
+            text.append(line)
+            continue
+        if text:
+            blocks.append(textwrap.fill(" ".join(text), 130, break_long_words=False, break_on_hyphens=False))
+            text = []
+        blocks.append(line)
+    return "\n".join(blocks).rstrip() + "\n"
+
+
+def progress(parts):
+    counts = [(len(set(part.movements)) if len(part) else 0, planned) for part, planned in zip(parts.values(), MOVEMENTS)]
+    done = [f"{count} of {planned} movements" for count, planned in counts]
+    if all(count == planned for count, planned in counts):
+        return "All movements of the design are finished."
+    return (f"**Not complete.** Finished are {done[0]}, {done[1]} near the default, and {done[2]} held out. They are an even sample of the "
+            "design, so shares will change within their intervals. What needs many movements to be told, such as the effect of the body's "
+            "shape, is uncertain.")
+
+
+def answer(own, questions):
+    """The answer in a paragraph."""
+    headline, on_d, on_p = own(HEADLINE), own("dependence on d"), own("dependence on p")
+    first, second, third = (row["factor"] for row in questions[:3])
+    return [
+        f"Of {headline['n']:,} reasonable configurations, {headline['judged']:,} ({percent(headline['judged'] / headline['n'])}) can judge the",
+        "published tree accuracy: the others find no sample with the right parts. In those that can, it holds in",
+        f"**{with_ends(headline)}**: the rate lies between 74.6 and 94.6 %. The dependence on d holds in **{with_ends(on_d)}** of the",
+        f"{on_d['judged']:,} that can judge it: no tree at d of 8 and below, and the tree at each d from 9 on. The dependence on p holds in",
+        f"**{with_ends(on_p)}** of {on_p['judged']:,}: p = 0.9 is best, and there is no tree at p of 0.4 and below. What the claims depend on",
+        f"most is {quoted(first)}, {quoted(second)} and {quoted(third)}. If the authors answered one question, {quoted(first)} would narrow",
+        "the answers most.",
+    ]
+
+
+def quoted(factor):
+    return f"*{factor}*"
+
+
+def by_choice(rows, name=lambda row: f"{row['factor']}: {row['option']}"):
+    found = {}
+    for row in rows:
+        found.setdefault(name(row), {})[row["claim"]] = row
+    return [[key, f"{own[HEADLINE]['n']:,}", *(f"{one['judged']}: {with_ends(one)}" if one["judged"] else "0" for one in own.values())]
+            for key, own in found.items()]
+
+
+def distance_of(row):
+    return f"{row['least']} to {row['most']}" if row["most"] < 99 else f"{row['least']} and more"
+
+
+def distribution(part):
+    values = part.values[HEADLINE]
+    has = ~np.isnan(values)
+    low, high = part.accepted[HEADLINE]
+    published = next(claim for claim in tomllib.loads((ROOT / "reproduce" / "published.toml").read_text())["claim"] if claim["id"] == HEADLINE)
+    found, number = values[has], published["published"]
+    reach = sum(end is not None and end[0] <= number <= end[1] for end in part.ends[HEADLINE])
+    if not len(found):
+        return ["No configuration has a tree accuracy yet."]
+    below = (found < number).mean()
+    return [
+        f"Of the {len(found):,} configurations with a tree accuracy, {percent((found < low).mean())} are below the accepted range",
+        f"({percent((found == 0).mean())} at 0), {percent(((found >= low) & (found <= high)).mean())} within it, and {percent((found > high).mean())} above. "
+        f"{percent(below)} are below the published {published['wording']}.",
+        f"The median is {percent(np.median(found))}, and the middle half lies between {percent(np.quantile(found, 0.25))} and {percent(np.quantile(found, 0.75))}.",
+        f"The intervals of {reach:,} reach the published number: most have few eligible samples.",
+    ]
+
+
+def ranking(questions):
+    names = ["all", *(name for name in ANSWERS if name in questions[0])]
+    return table(["setting", *names], [[row["factor"], *(with_ends(row, name) for name in names)] for row in questions])
+
+
+def explained(left):
+    return "–" if left == "" else f"{100 * (1 - float(left)):.0f} %"
+
+
+if __name__ == "__main__":
+    sys.exit(main())
