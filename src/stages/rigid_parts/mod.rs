@@ -20,6 +20,7 @@ pub(crate) mod fixtures;
 mod floor;
 mod growth;
 mod halves;
+mod loadings;
 mod log_determinant;
 mod medians;
 mod moves;
@@ -31,6 +32,7 @@ mod search;
 mod separation;
 mod stratified;
 mod subspace;
+mod weights;
 
 pub(crate) use self::als::Als;
 pub(crate) use self::faces::{opposite_pairs, similar};

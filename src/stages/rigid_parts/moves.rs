@@ -15,9 +15,6 @@ const MIN_GROUP: usize = 2;
 /// Sensors of a group that are tried, and of a cluster that they are tried with. They are as many, so that neither decides alone what
 /// the motion is.
 const MAX_TRIED: usize = 24;
-/// Share of the description of a group that its cluster saves if the group is where it belongs. What the ends of a cylinder share
-/// with its side saves 0.4 to 0.75 of it, and with another side −0.8 to 0.2.
-const SHARED: f64 = 0.4;
 
 /// Where a group costs less than in its cluster.
 enum Place {
@@ -25,33 +22,18 @@ enum Place {
     Alone,
 }
 
-/// A cluster, and the same with a group of sensors.
-struct Trial {
-    without: Cluster,
-    with: Cluster,
-}
-
-impl Trial {
-    /// Description length that the group adds, in nats per sample.
-    fn cost(&self) -> f64 {
-        self.with.description_length - self.without.description_length
-    }
-
-    /// Whether the cluster knows much of the motion of the group, which is `alone` by itself.
-    fn is_home(&self, alone: &Cluster) -> bool {
-        alone.description_length - self.cost() >= SHARED * alone.description_length
-    }
-}
-
 impl Search {
     /// The clusters, with each group of sensors where it costs the least: in its cluster, in another, or alone.
     pub(super) fn moved(&mut self, mut clusters: Vec<Cluster>) -> Vec<Cluster> {
         let groups: Vec<Vec<usize>> = clusters.iter().flat_map(|own| self.groups(own)).collect();
+        let mut cores: Vec<f64> = clusters.par_iter().map(|own| self.core(&own.sensors)).collect();
         for group in groups {
             // Groups that went before may have taken their cluster apart.
             let holds = |own: &Cluster| group.iter().all(|sensor| own.sensors.binary_search(sensor).is_ok());
-            if let Some(home) = clusters.iter().position(holds) {
-                self.move_group(&mut clusters, home, &group);
+            let Some(home) = clusters.iter().position(holds) else { continue };
+            for changed in self.move_group(&mut clusters, &cores, home, &group) {
+                cores.resize(clusters.len(), 0.0);
+                cores[changed] = self.core(&clusters[changed].sensors);
             }
         }
         clusters
@@ -65,57 +47,72 @@ impl Search {
         groups
     }
 
-    /// Moves a group from its cluster to where it costs the least, if that is another place.
-    fn move_group(&mut self, clusters: &mut Vec<Cluster>, home: usize, group: &[usize]) {
+    /// Moves a group from its cluster to where it costs the least, if that is another place. Returns the clusters that have changed.
+    fn move_group(
+        &mut self,
+        clusters: &mut Vec<Cluster>,
+        cores: &[f64],
+        home: usize,
+        group: &[usize],
+    ) -> Vec<usize> {
         let is_left = |sensor: &usize| !group.contains(sensor);
         let rest: Vec<usize> = clusters[home].sensors.iter().copied().filter(is_left).collect();
         if rest.len() < MIN_CLUSTER {
-            return;
+            return Vec::new();
         }
-        let Some(place) = self.better_place(clusters, home, &rest, group) else { return };
+        let Some(place) = self.better_place(clusters, cores, home, &rest, group) else { return Vec::new() };
         clusters[home] = self.completing(rest);
         match place {
             Place::Cluster(to) => {
                 clusters[to] = self.completing([clusters[to].sensors.as_slice(), group].concat());
+                vec![home, to]
             }
-            Place::Alone if group.len() >= MIN_CLUSTER => clusters.push(self.completing(group.to_vec())),
-            Place::Alone => {}
+            Place::Alone if group.len() >= MIN_CLUSTER => {
+                clusters.push(self.completing(group.to_vec()));
+                vec![home, clusters.len() - 1]
+            }
+            Place::Alone => vec![home],
         }
     }
 
-    /// Where a group costs less than with the rest of its cluster.
+    /// Where a group costs less than with the rest of its cluster. `cores` has the description length of the core of each cluster.
     fn better_place(
         &self,
         clusters: &[Cluster],
+        cores: &[f64],
         home: usize,
         rest: &[usize],
         group: &[usize],
     ) -> Option<Place> {
         let tried: Vec<usize> = stratified(group.len(), MAX_TRIED).map(|at| group[at]).collect();
-        let (alone, here) = (self.learned(tried.clone()), self.trial(rest, &tried));
-        // Any cluster explains a few sensors.
-        let is_told = group.len() >= SEED_SENSORS[0];
-        if is_told && here.is_home(&alone) {
-            return None;
-        }
-        let others = (0..if is_told { clusters.len() } else { 0 }).into_par_iter().filter(|at| *at != home);
+        let alone = self.learned(tried.clone()).description_length;
+        let here = self.with_core(rest, &tried).description_length - self.core(rest);
+        // Any cluster explains a few sensors, and none costs less than nothing.
+        let is_told = group.len() >= SEED_SENSORS[0] && here > MIN_SAVING;
+        let others = (0..if is_told { clusters.len() } else { 0 }).filter(|at| *at != home).collect();
+        let others = self.nearest(group, others, |at| &clusters[at].sensors);
         let others: Vec<(f64, usize)> = others
-            .map(|at| (self.trial(&clusters[at].sensors, &tried), at))
-            .filter(|(trial, _)| self.explains(&trial.with))
-            .map(|(trial, at)| (trial.cost(), at))
+            .into_par_iter()
+            .map(|at| (self.with_core(&clusters[at].sensors, &tried), at))
+            .filter(|(both, _)| self.explains(both))
+            .map(|(both, at)| (both.description_length - cores[at], at))
             .collect();
         let least = others.into_iter().reduce(|least, other| if other.0 < least.0 { other } else { least });
-        match least.filter(|(cost, _)| alone.description_length - cost > MIN_SAVING) {
-            Some((cost, at)) => (here.cost() - cost > MIN_SAVING).then_some(Place::Cluster(at)),
-            None => (alone.description_length - here.cost() < MIN_SAVING).then_some(Place::Alone),
+        match least.filter(|(cost, _)| alone - cost > MIN_SAVING) {
+            Some((cost, at)) => (here - cost > MIN_SAVING).then_some(Place::Cluster(at)),
+            None => (alone - here < MIN_SAVING).then_some(Place::Alone),
         }
     }
 
-    /// Some of these sensors, without and with a group.
-    fn trial(&self, sensors: &[usize], group: &[usize]) -> Trial {
-        let some: Vec<usize> = stratified(sensors.len(), MAX_TRIED).map(|at| sensors[at]).collect();
-        let both = [some.as_slice(), group].concat();
-        Trial { without: self.learned(some), with: self.learned(both) }
+    /// Description length of the core of a cluster: some of its sensors, spread over all.
+    fn core(&self, sensors: &[usize]) -> f64 {
+        self.with_core(sensors, &[]).description_length
+    }
+
+    /// The core of a cluster and a group, as one cluster.
+    fn with_core(&self, sensors: &[usize], group: &[usize]) -> Cluster {
+        let core: Vec<usize> = stratified(sensors.len(), MAX_TRIED).map(|at| sensors[at]).collect();
+        self.learned([core.as_slice(), group].concat())
     }
 
     fn learned(&self, sensors: Vec<usize>) -> Cluster {

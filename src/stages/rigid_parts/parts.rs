@@ -69,30 +69,37 @@ pub fn rigid_parts(tactile: &Tactile, signed: bool, sensors: &[usize]) -> RigidP
     let floor = typical_floor(&floors, &scales);
     let every = every.scaled(&scales);
     let sizes = every.select(sensors).sizes();
-    let every = every.equalised(&sizes, floor);
+    let mut every = every.equalised(&sizes, floor);
     // Sensors that feel something at fewer samples tell next to nothing, and span motions of their own. They go to the part that explains
     // them best, unless nearly all are such.
-    let tells = |sensor: usize| every.felt_samples(sensor) >= MIN_FELT;
-    let telling: Vec<usize> = sensors.iter().copied().filter(|&sensor| tells(sensor)).collect();
+    let tells: Vec<bool> = (0..all.len()).map(|sensor| every.felt_samples(sensor) >= MIN_FELT).collect();
+    let telling: Vec<usize> = sensors.iter().copied().filter(|&sensor| tells[sensor]).collect();
     let are_enough = telling.len() >= MIN_SENSORS;
     let sensors = if are_enough { &telling } else { sensors };
     let some = series_of(sensors);
     let roots = every.select_as_they_are(sensors);
     let completion = Completion::new(&roots);
-    let felt =
-        Felt { roots, completed: completion.velocities, sizes, tolerance: 0.0, iterations: ITERATIONS };
+    let felt = Felt {
+        roots,
+        completed: completion.velocities,
+        sizes: sizes.clone(),
+        tolerance: 0.0,
+        iterations: ITERATIONS,
+    };
     let mut search = Search::new(felt, completion.affinities);
     let mut parts = parts_of(search.clusters());
     if parts.is_empty() {
         parts.push(search.whole());
     }
+    // As the search has weighed the samples.
+    every.divide(&search.felt.sizes.iter().zip(&sizes).map(|(now, before)| now / before).collect::<Vec<_>>());
     let mut labels: Vec<Option<usize>> = vec![None; all.len()];
     for (at, part) in parts.iter().enumerate() {
         part.sensors.iter().for_each(|&sensor| labels[sensors[sensor]] = Some(at));
     }
     let residuals: Vec<Vec<f64>> = parts.par_iter().map(|part| part.shares(&every)).collect();
     for (sensor, label) in labels.iter_mut().enumerate() {
-        let most = if are_enough && !tells(sensor) { f64::INFINITY } else { search.most_residual() };
+        let most = if are_enough && !tells[sensor] { f64::INFINITY } else { search.most_residual() };
         *label = label.or_else(|| explaining(&residuals, sensor, most));
     }
     let rest: Vec<usize> = (0..all.len()).filter(|&sensor| labels[sensor].is_none()).collect();

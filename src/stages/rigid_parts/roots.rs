@@ -131,6 +131,12 @@ impl Roots {
         self
     }
 
+    /// Divides the roots at each sample, and their threshold.
+    pub(super) fn divide(&mut self, divisors: &[f64]) {
+        divide_rows(&mut self.values, divisors);
+        self.thresholds.iter_mut().zip(divisors).for_each(|(least, divisor)| *least /= divisor);
+    }
+
     /// Of these sensors only, felt from the same thresholds on.
     pub(super) fn select_as_they_are(&self, sensors: &[usize]) -> Self {
         let values = columns(&self.values, sensors);
@@ -224,6 +230,17 @@ pub(super) fn product(left: MatRef<'_, f64>, right: MatRef<'_, f64>) -> Mat<f64>
 fn known(matrix: &Mat<f64>) -> Mat<f64> {
     let known = |value: f64| if value.is_nan() { 0.0 } else { value };
     Mat::from_fn(matrix.nrows(), matrix.ncols(), |row, column| known(matrix[(row, column)]))
+}
+
+/// Divides each row.
+pub(super) fn divide_rows(matrix: &mut Mat<f64>, divisors: &[f64]) {
+    for column in 0..matrix.ncols() {
+        matrix
+            .col_as_slice_mut(column)
+            .iter_mut()
+            .zip(divisors)
+            .for_each(|(value, divisor)| *value /= divisor);
+    }
 }
 
 /// Some columns.

@@ -10,6 +10,7 @@ use rayon::prelude::*;
 
 use super::cluster::{Cluster, Felt, LEAST_TOLERANCE};
 use super::medians::median;
+use super::weights::weigh;
 use crate::numerics::linkage::largest_clusters;
 
 /// Sensors of a seed cluster: the fewest, and the most. Others wait until clusters have grown.
@@ -87,14 +88,26 @@ impl Search {
         Cluster::new(&self.felt, (0..self.felt.roots.sensors()).collect())
     }
 
-    /// The seed clusters that one motion explains. What it leaves of most of them sets the tolerance.
+    /// The seed clusters that one motion explains. What it leaves of most of them sets the tolerance, and weighs the samples.
     fn seed_clusters(&mut self, sensors: &[usize]) -> Vec<Cluster> {
         let seeds = self.seeds(sensors, SEED_SENSORS[1]);
+        self.felt.tolerance = self.left(&seeds);
+        let found = self.unmixed(&seeds);
+        weigh(&mut self.felt, &found);
+        self.felt.tolerance = self.left(&seeds);
+        self.unmixed(&seeds)
+    }
+
+    /// The residual variance that one motion leaves of most of these seed clusters, within the bounds of the tolerance.
+    fn left(&mut self, seeds: &[Vec<usize>]) -> f64 {
         self.felt.tolerance = TOLERANCE[0];
         let variance = |own: &Vec<usize>| Cluster::widest(&self.felt, own.clone()).variance();
-        let variances: Vec<f64> = seeds.par_iter().map(variance).collect();
-        self.felt.tolerance = median(variances).clamp(TOLERANCE[0], TOLERANCE[1]);
-        let found: Vec<Cluster> = seeds.into_par_iter().map(|own| Cluster::new(&self.felt, own)).collect();
+        median(seeds.par_iter().map(variance).collect()).clamp(TOLERANCE[0], TOLERANCE[1])
+    }
+
+    /// The clusters of these sensors that one motion explains.
+    fn unmixed(&self, seeds: &[Vec<usize>]) -> Vec<Cluster> {
+        let found: Vec<Cluster> = seeds.par_iter().map(|own| Cluster::new(&self.felt, own.clone())).collect();
         found.into_iter().filter(|own| own.variance() <= MIXED * self.felt.tolerance).collect()
     }
 
@@ -167,28 +180,37 @@ impl Search {
 
     /// Each cluster with those of highest affinity, on average.
     fn pairs(&self, clusters: &BTreeMap<usize, Cluster>) -> Vec<(usize, usize)> {
-        let affinity = |a: &Cluster, b: &Cluster| {
-            let sum: f64 =
-                a.sensors.iter().flat_map(|&i| b.sensors.iter().map(move |&j| self.affinities[(i, j)])).sum();
-            sum / (a.sensors.len() * b.sensors.len()) as f64
-        };
         let names: Vec<usize> = clusters.keys().copied().collect();
         let mut found: Vec<(usize, usize)> = names
             .par_iter()
             .flat_map_iter(|&a| {
-                let mut others: Vec<(f64, usize)> = names
-                    .iter()
-                    .filter(|&&b| b != a)
-                    .map(|&b| (affinity(&clusters[&a], &clusters[&b]), b))
-                    .collect();
-                others.sort_by(|one, other| other.0.total_cmp(&one.0));
-                others.truncate(NEIGHBOURS);
-                others.into_iter().map(move |(_, b)| (a.min(b), a.max(b)))
+                let others: Vec<usize> = names.iter().copied().filter(|&b| b != a).collect();
+                let nearest = self.nearest(&clusters[&a].sensors, others, |b| &clusters[&b].sensors);
+                nearest.into_iter().map(move |b| (a.min(b), a.max(b)))
             })
             .collect();
         found.sort_unstable();
         found.dedup();
         found
+    }
+
+    /// The clusters of highest affinity with some sensors, on average, the highest first.
+    pub(super) fn nearest<'a>(
+        &self,
+        sensors: &[usize],
+        clusters: Vec<usize>,
+        of: impl Fn(usize) -> &'a Vec<usize>,
+    ) -> Vec<usize> {
+        let affinity = |other: &[usize]| {
+            let sum: f64 =
+                sensors.iter().flat_map(|&i| other.iter().map(move |&j| self.affinities[(i, j)])).sum();
+            sum / (sensors.len() * other.len()) as f64
+        };
+        let mut order: Vec<(f64, usize)> =
+            clusters.into_iter().map(|name| (affinity(of(name)), name)).collect();
+        order.sort_by(|one, other| other.0.total_cmp(&one.0));
+        order.truncate(NEIGHBOURS);
+        order.into_iter().map(|(_, name)| name).collect()
     }
 
     /// Assigns each of these sensors to the cluster that leaves it the smallest residual, if that explains it.
