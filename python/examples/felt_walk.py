@@ -101,9 +101,8 @@ for bone in np.unique(moved.parts):
         print(moved.names[bone])
 
 # %% [markdown]
-# **Sensors that feel too little.** A few sensors are on a wrong part. All but one feel something at a few samples only. So few
-# numbers do not tell which part's motion made them: several explain them well, or none does. The one of the left foot feels much, but
-# both leg and foot explain it to less than a millionth of its variance: it hardly feels how the ankle turns.
+# **Sensors that feel too little.** A few sensors are on a wrong part. They feel something at a few samples only. So few numbers do not
+# tell which part's motion made them: several explain them well, or none does.
 
 # %%
 wrong = [sensor for sensor in np.flatnonzero(felt) if bone_of[found.parts[sensor]] != moved.parts[sensor]]
@@ -130,6 +129,6 @@ plt.show()
 # The remedy is a longer and more varied movement, in which each sensor moves outward often.
 #
 # This walk is no test of the method: we made three, and show the one whose tree is right. In the other two, most angles wandered about
-# half to two thirds as far. In the first, one foot was taken for two parts, and the legs for parts on the chest. In the second, the person
-# also stepped back at times, and 51 sensors of chest and hips came out as a part of their own.
+# half to two thirds as far. With an earlier search, one foot of the first was taken for two parts, and the legs for parts on the chest. In
+# the second, the person also stepped back at times, and 51 sensors of chest and hips came out as a part of their own.
 # [Recordings that were held out](../../docs/own-data.md#recorded-movements) are a test.
