@@ -51,8 +51,8 @@ class Surrogate:
 class Chosen:
     """The surrogate of some values whose settings have the least squared error in cross-validation over movements, and that error.
 
-    `error` is the share of the variance that it leaves in movements that it has not seen, `forest` that of a random forest and
-    `residuals` are the prediction errors behind `error`.
+    `error` is the share of the variance that it leaves in movements that it has not seen, and `forest` that of a random forest, which is not
+    tuned. `residuals` are the prediction errors behind `error`. Both are of the folds that chose the settings, so they are a little too small.
     """
 
     def __init__(self, codes, values, movements, seed):
@@ -76,13 +76,11 @@ class Chosen:
         self.pairs, self.penalty = settings[best]
         self.error = squares[best] / total
         self.residuals = values - all_predicted[best]
-        self.predicted = all_predicted[best]
         self.surrogate = Surrogate(codes, values, self.pairs, self.penalty)
         self.forest = ((values - predicted(lambda train: Forest(codes[train], values[train], seed))) ** 2).sum() / total
 
     def half_width(self, level=0.9):
-        """Half of the width of a prediction interval: the quantile of the prediction errors in cross-validation (split conformal
-        prediction; Vovk 2015, cross-conformal predictors)."""
+        """Half of the width of a prediction interval: a quantile of the sizes of the prediction errors in cross-validation."""
         errors = np.sort(np.abs(self.residuals))
         return float(errors[min(len(errors) - 1, int(np.ceil(level * (len(errors) + 1))) - 1)])
 
@@ -102,25 +100,31 @@ class Forest:
         return np.concatenate([own[:, None] == np.arange(count) for own, count in zip(codes.T, self.counts)], axis=1)
 
 
-def knowing(surrogate, codes, options):
+def knowing(surrogate, codes, overriding=()):
     """The variance that knowing each factor's choice would take away: that of the mean prediction over the options (the numerator of
     Sobol's first-order index; Saltelli et al. 2008, Global Sensitivity Analysis, section 1.2.14).
 
-    `options` has for each factor the probability of each of its options. Means are over the configurations `codes` to which the factor
-    applies.
+    Means are over the configurations `codes` to which a factor applies, each with every option in turn; options count by how often they
+    are there. An option of an `overriding` factor would leave the others without a choice, so that means are over those that have it.
     """
     agree = np.zeros((len(codes), len(surrogate.codes)))
     matches = [(own[:, None] == other[None, :]) & (own != OVERRIDDEN)[:, None] for own, other in zip(codes.T, surrogate.codes.T)]
     for match in matches:
         agree += match
+
+    def predicted(agree):
+        return of_share(agree / codes.shape[1], surrogate.pairs) @ surrogate.weights
+
     taken = []
-    for factor, weights in enumerate(options):
-        applies = codes[:, factor] != OVERRIDDEN
-        rest = (agree - matches[factor])[applies]
-        means = []
-        for option in range(len(weights)):
-            share = (rest + (surrogate.codes[:, factor] == option)) / codes.shape[1]
-            means.append((of_share(share, surrogate.pairs) @ surrogate.weights).mean())
+    for factor, own in enumerate(codes.T):
+        applies = own != OVERRIDDEN
+        options, counts = np.unique(own[applies], return_counts=True)
+        if factor in overriding:
+            means = [predicted(agree[own == option]).mean() for option in options]
+        else:
+            rest = (agree - matches[factor])[applies]
+            means = [predicted(rest + (surrogate.codes[:, factor] == option)).mean() for option in options]
+        weights = counts / max(1, counts.sum())
         middle = np.dot(weights, means)
         taken.append(applies.mean() * np.dot(weights, (np.array(means) - middle) ** 2))
     return np.array(taken)
