@@ -87,8 +87,12 @@ impl Search {
         let tried: Vec<usize> = stratified(group.len(), MAX_TRIED).map(|at| group[at]).collect();
         let alone = self.learned(tried.clone()).description_length;
         let here = self.with_core(rest, &tried).description_length - self.core(rest);
-        // Any cluster explains a few sensors, and none costs less than nothing.
-        let is_told = group.len() >= SEED_SENSORS[0] && here > MIN_SAVING;
+        // Any cluster explains a few sensors.
+        let is_told = group.len() >= SEED_SENSORS[0];
+        if is_told && here <= MIN_SAVING {
+            // No other can save as much, since none costs less than nothing.
+            return None;
+        }
         let others = (0..if is_told { clusters.len() } else { 0 }).filter(|at| *at != home).collect();
         let others = self.nearest(group, others, |at| &clusters[at].sensors);
         let others: Vec<(f64, usize)> = others

@@ -29,7 +29,7 @@ const MAX_SAMPLES: usize = 1500;
 /// The part of each of M sensors, and how well its motion explains what the sensor feels.
 ///
 /// A residual is the share of the mean square of a sensor's roots that the motion of a part leaves unexplained: 0 if it explains
-/// everything, 1 if nothing.
+/// everything, 1 if nothing. Samples at which all sensors have a large error weigh less.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RigidParts {
     /// The part of each sensor, 0, 1, … in order of appearance.

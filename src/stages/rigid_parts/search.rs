@@ -91,18 +91,19 @@ impl Search {
     /// The seed clusters that one motion explains. What it leaves of most of them sets the tolerance, and weighs the samples.
     fn seed_clusters(&mut self, sensors: &[usize]) -> Vec<Cluster> {
         let seeds = self.seeds(sensors, SEED_SENSORS[1]);
-        self.felt.tolerance = self.left(&seeds);
+        self.set_tolerance(&seeds);
         let found = self.unmixed(&seeds);
         weigh(&mut self.felt, &found);
-        self.felt.tolerance = self.left(&seeds);
+        self.set_tolerance(&seeds);
         self.unmixed(&seeds)
     }
 
-    /// The residual variance that one motion leaves of most of these seed clusters, within the bounds of the tolerance.
-    fn left(&mut self, seeds: &[Vec<usize>]) -> f64 {
+    /// Sets the tolerance to the residual variance that one motion leaves of most of these seed clusters, within bounds.
+    fn set_tolerance(&mut self, seeds: &[Vec<usize>]) {
         self.felt.tolerance = TOLERANCE[0];
         let variance = |own: &Vec<usize>| Cluster::widest(&self.felt, own.clone()).variance();
-        median(seeds.par_iter().map(variance).collect()).clamp(TOLERANCE[0], TOLERANCE[1])
+        let variances = seeds.par_iter().map(variance).collect();
+        self.felt.tolerance = median(variances).clamp(TOLERANCE[0], TOLERANCE[1]);
     }
 
     /// The clusters of these sensors that one motion explains.

@@ -10,7 +10,7 @@ use super::cluster::{Cluster, Felt};
 use super::roots::divide_rows;
 
 /// Divides what was felt at each sample by √(1 + σ²/τ), for the residual variance σ² that these clusters leave there, and the tolerance τ.
-/// Then no sample leaves more than τ. Where the data are exact, nothing changes.
+/// Then no sample leaves more than τ. Where the data are exact, next to nothing changes.
 pub(super) fn weigh(felt: &mut Felt, clusters: &[Cluster]) {
     let residuals: Vec<Vec<[f64; 2]>> = clusters.par_iter().map(|own| by_sample(felt, own)).collect();
     let divisor = |t: usize| {
