@@ -108,7 +108,7 @@ class Part:
 
     def __init__(self, folder):
         self.factors, self.rows, self.movements = [], [], np.array([])
-        if not folder.is_dir():
+        if not (folder / "design.toml").is_file():
             return
         self.design = tomllib.loads((folder / "design.toml").read_text())
         if "extends" in self.design:

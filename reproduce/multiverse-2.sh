@@ -70,7 +70,7 @@ case ${1:-run} in
         done ;;
     gather)
         for name in multiverse-2 multiverse-2-near multiverse-2-held-out; do
-            [ -d "$out/$name" ] || continue
+            compgen -G "$out/$name/*/manifest.json" >/dev/null || continue
             rm -rf "$out/gathered/$name"
             "$program" study "$root/reproduce/$name.toml" --join "$out/$name" --out "$out/gathered/$name"
         done ;;
