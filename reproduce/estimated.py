@@ -1,4 +1,4 @@
-"""What the scripts share that count how often parts and tree are right: gaps.py, recordings.py and robots.py."""
+"""What scripts share: gaps.py, recordings.py and robots.py, which count how often parts and tree are right, and multiverse-2.py."""
 
 import csv
 import hashlib
@@ -44,6 +44,12 @@ def estimated(felt, found, seed):
     }
 
 
+def read(table):
+    """The rows of a CSV file."""
+    with open(table, newline="") as file:
+        return list(csv.DictReader(file))
+
+
 def write(table, columns, rows):
     """Write rows to a CSV file."""
     with open(table, "w", newline="") as file:
@@ -52,11 +58,16 @@ def write(table, columns, rows):
         writer.writerows(rows)
 
 
-def interval(count, of):
-    """A count with the 95 % interval of its share (Wilson)."""
+def wilson(count, of):
+    """The 95 % interval of the share of a count (Wilson)."""
     z = 1.96
     middle, half = count + z * z / 2, z * math.sqrt(count * (of - count) / of + z * z / 4)
-    low, high = ((middle + sign * half) / (of + z * z) for sign in (-1, 1))
+    return [(middle + sign * half) / (of + z * z) for sign in (-1, 1)]
+
+
+def interval(count, of):
+    """A count with the 95 % interval of its share."""
+    low, high = wilson(count, of)
     return f"{count} of {of} ({100 * low:.0f} to {100 * high:.0f} %)"
 
 

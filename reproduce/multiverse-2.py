@@ -8,7 +8,6 @@ Needs Python 3.11 and the packages of python/requirements.txt. Takes some minute
 
 import argparse
 import copy
-import csv
 import json
 import math
 import pathlib
@@ -25,7 +24,7 @@ try:
 except ModuleNotFoundError as missing:
     sys.exit(f"multiverse-2: needs {missing.name}; run: pip install -r python/requirements.txt")
 
-from estimated import ROOT, fail, write
+from estimated import ROOT, fail, read, wilson, write
 
 SEED = 6700000
 HEADLINE = "tree-accuracy"
@@ -171,11 +170,6 @@ class Part:
         return self.labels[at].index(label) if label else OVERRIDDEN
 
 
-def read(file):
-    with open(file, newline="") as rows:
-        return list(csv.DictReader(rows))
-
-
 # ---- Shares
 
 
@@ -190,10 +184,9 @@ def share(holds, movements):
     for _ in range(2000):
         drawn = [clusters[at] for at in random.integers(len(clusters), size=len(clusters))]
         found.append(sum(one.sum() for one in drawn) / sum(map(len, drawn)))
-    middle, n, z = holds.mean(), len(clusters), 1.96
-    centre, half = middle * n + z * z / 2, z * math.sqrt(n * middle * (1 - middle) + z * z / 4)
-    low, high = (max(0.0, (centre + sign * half) / (n + z * z)) for sign in (-1, 1))
-    return middle, min(low, np.quantile(found, 0.025)), max(high, np.quantile(found, 0.975))
+    middle = holds.mean()
+    low, high = wilson(middle * len(clusters), len(clusters))
+    return middle, min(max(0.0, low), np.quantile(found, 0.025)), max(high, np.quantile(found, 0.975))
 
 
 def row_of(part, keep, claim):
@@ -451,6 +444,8 @@ def page(parts, shares, same, choices, around, questions, errors):
         "reason for each. It was written before the first run. A claim about trees *can be judged* if samples are eligible: right number of",
         "parts, and an adjusted Rand index (ARI) of 1. Intervals are 95 % intervals over resamples of the movements. They are never narrower than",
         "Wilson's for as many trials as there are movements, which decides where a share is 0 or 100 %.",
+        "",
+        f"The seeds of the movements are {SEED + 1:,} on. Made by:",
         "",
         "    reproduce/multiverse-2.sh            # runs what is left",
         "    reproduce/multiverse-2.sh gather",

@@ -11,7 +11,6 @@ about 45 minutes for each movement on two busy cores. Status: 0, or 2 on an erro
 import argparse
 import array
 import collections
-import csv
 import json
 import math
 import pathlib
@@ -24,7 +23,7 @@ try:
 except ModuleNotFoundError:
     sys.exit("robots: needs Python 3.11 or newer")
 
-from estimated import ROOT, TRUTH, downloaded, estimated, fail, interval, run, tried, write
+from estimated import ROOT, TRUTH, downloaded, estimated, fail, interval, read, run, tried, write
 
 COLUMNS = ["robot", "kind", "use", "movement", "seed", "sensors", "fit", *TRUTH, "resolved", "unfelt",
            "either", "astray", "astray_either", "refused", "revision"]
@@ -68,10 +67,6 @@ def main():
 
 def place(robot, files):
     return files / robot["from"].replace("/", "+")
-
-
-def read(table):
-    return list(csv.DictReader(table.read_text().splitlines()))
 
 
 def keep(folder, kept):
