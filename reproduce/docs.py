@@ -24,6 +24,8 @@ import subprocess
 import sys
 import tomllib
 
+from estimated import flat
+
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 SHOWN = ROOT / "docs" / "shown"
 # Tables with more bytes are packed: nearly all of them is again and again the same.
@@ -422,7 +424,7 @@ def read_settings():
         elif (more := re.fullmatch(r"\s+# (.+)", row)) and key:
             settings[key]["comment"] += f" {more[1]}"
     parsed = tomllib.loads(text)
-    keys = set(flat(parsed))
+    keys = {key for key, _ in flat(parsed)}
     assert keys == set(settings), f"paper.toml: no comment beside {keys - set(settings)}"
     for setting in settings.values():
         comment = setting["comment"]
@@ -430,15 +432,6 @@ def read_settings():
         unit = re.match(rf"(?:ours: |stated \([\d.]+\): )({'|'.join(map(re.escape, UNITS))})(?:[,;]|$)", comment)
         setting["unit"] = f" {unit[1].replace('^3', '³')}" if unit else ""
     return settings
-
-
-def flat(table):
-    """Dotted names of all settings of a table."""
-    for name, value in table.items():
-        if isinstance(value, dict):
-            yield from (f"{name}.{key}" for key in flat(value))
-        else:
-            yield name
 
 
 def line(title, keys, paper, reason, settings, searched):

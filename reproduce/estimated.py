@@ -1,4 +1,4 @@
-"""What scripts share: gaps.py, recordings.py and robots.py, which count how often parts and tree are right, and multiverse-2.py."""
+"""What scripts share: gaps.py, recordings.py and robots.py, which count how often parts and tree are right, and others that read tables."""
 
 import csv
 import hashlib
@@ -56,6 +56,15 @@ def write(table, columns, rows):
         writer = csv.DictWriter(file, columns, lineterminator="\n")
         writer.writeheader()
         writer.writerows(rows)
+
+
+def flat(table, path=""):
+    """The settings of a table by their dotted names."""
+    for key, value in table.items():
+        if isinstance(value, dict):
+            yield from flat(value, f"{path}{key}.")
+        else:
+            yield f"{path}{key}", value
 
 
 def wilson(count, of):

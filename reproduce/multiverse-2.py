@@ -7,7 +7,6 @@ Needs Python 3.11 and the packages of python/requirements.txt. Takes some minute
 """
 
 import argparse
-import copy
 import json
 import math
 import pathlib
@@ -20,35 +19,14 @@ try:
     import matplotlib
     import numpy as np
     from scipy import stats
+    from replications import CLAIMS, HEADLINE, TOGETHER, Part, default, overrides
     from surrogate import OVERRIDDEN, Chosen, Surrogate, knowing
 except ModuleNotFoundError as missing:
     sys.exit(f"multiverse-2: needs {missing.name}; run: pip install -r python/requirements.txt")
 
-from estimated import ROOT, fail, read, wilson, write
+from estimated import ROOT, fail, wilson, write
 
 SEED = 6700000
-HEADLINE = "tree-accuracy"
-# What is said of several claims together: the two sides of the dependence on d, and of that on p.
-TOGETHER = {
-    "dependence on d": ["tree-low-dimensions", "tree-high-dimensions"],
-    "dependence on p": ["tree-random-movement", "best-coordination"],
-}
-# A tie counts as the best p, so that a tree that is never found would be found best everywhere. The dependence on p needs this tree accuracy
-# at p = 0.9, too: the half that the claims about d take for "recovered".
-RECOVERED = 0.5
-# In the order of the page.
-CLAIMS = {
-    "tree-accuracy": "the headline: tree accuracy at p = 0.9, d = 14",
-    "tree-low-dimensions": "no tree at d of 8 and below",
-    "tree-high-dimensions": "the tree at each d from 9 on",
-    "first-dimension": "the tree from about d = 9 on",
-    "tree-random-movement": "no tree at p of 0.4 and below",
-    "best-coordination": "p = 0.9 is best (a tie counts)",
-    "baseline-tree": "DPGMM + Prim never finds the tree",
-    "number-of-parts": "slightly more than five parts at each d",
-    "ari-unknown-number": "ARI above 0.8 at each d",
-    "ari-over-coordination": "ARI above 0.8 at each p but 1",
-}
 PERCENT = {"tree-accuracy", "tree-low-dimensions", "tree-high-dimensions", "tree-random-movement", "baseline-tree"}
 # What the authors are to be asked about: each of these answers counts the same, whatever the number of its claims.
 ANSWERS = {
@@ -100,74 +78,6 @@ def main():
     shutil.copy(arguments.folder / "multiverse-2" / "figures" / "tree-accuracy.svg", arguments.out / "tree-accuracy.svg")
     (arguments.out / "explorer.html").write_text(explorer(chosen, whole))
     (arguments.out / "README.md").write_text(page(parts, shares, same, choices, around, questions, errors))
-
-
-class Part:
-    """The configurations of one design, and what each gave: arrays with one entry for each, in the order of their numbers."""
-
-    def __init__(self, folder):
-        self.factors, self.rows, self.movements = [], [], np.array([])
-        if not (folder / "design.toml").is_file():
-            return
-        self.design = tomllib.loads((folder / "design.toml").read_text())
-        if "extends" in self.design:
-            base = tomllib.loads((ROOT / "reproduce" / self.design["extends"]).read_text())
-            self.design = {**base, **self.design}
-        self.factors = [factor["name"] for factor in self.design["factor"]]
-        self.labels = [[option["label"] for option in factor["option"]] for factor in self.design["factor"]]
-        self.rows = read(folder / "configurations.csv")
-        self.movements = np.array([int(row["movement"]) for row in self.rows])
-        self.resolved = np.array([row["resolved"] == "true" for row in self.rows])
-        self.codes = np.array([[self.code(at, row[factor]) for at, factor in enumerate(self.factors)] for row in self.rows])
-        self.values, self.holds, self.judged, self.ends, self.accepted = {}, {}, {}, {}, {}
-        claims = read(folder / "study.csv")
-        for claim in CLAIMS:
-            own = [row for row in claims if row["claim"] == claim]
-            self.values[claim] = np.array([float(row["value"] or "nan") for row in own])
-            self.judged[claim] = np.array([row["verdict"] != "not testable" for row in own])
-            self.holds[claim] = np.array([row["verdict"] == "reproduced" for row in own])
-            self.ends[claim] = np.array([[float(row[end] or "nan") for end in ("low", "high")] for row in own])
-            self.accepted[claim] = (float(own[0]["accepted_low"]), float(own[0]["accepted_high"]))
-            if claim == HEADLINE:
-                self.eligible = np.array([int(row["n"]) for row in own])
-        for name, claims in TOGETHER.items():
-            self.judged[name] = np.all([self.judged[claim] for claim in claims], axis=0)
-            self.holds[name] = np.all([self.holds[claim] for claim in claims], axis=0)
-        self.holds["dependence on p"] &= self.values[HEADLINE] >= RECOVERED
-
-    def is_literal(self):
-        """Which configurations take an ARI of 1.00 for exactly 1."""
-        at = self.factors.index("ARI of 1.00")
-        return self.codes[:, at] == self.labels[at].index("exactly 1")
-
-    def literal(self):
-        """These configurations only: one for each replication."""
-        if not len(self):
-            return self
-        keep = self.is_literal()
-        found = copy.copy(self)
-        found.rows = [row for row, kept in zip(self.rows, keep) if kept]
-        found.movements, found.resolved, found.codes, found.eligible = (
-            own[keep] for own in (self.movements, self.resolved, self.codes, self.eligible))
-        found.values, found.holds, found.judged, found.ends = (
-            {name: own[keep] for name, own in all_claims.items()} for all_claims in (self.values, self.holds, self.judged, self.ends))
-        return found
-
-    def same_verdicts(self):
-        """In how many replications both meanings of an ARI of 1.00 give the same verdicts, and in how many there are both."""
-        literal = self.is_literal()
-        at = self.factors.index("ARI of 1.00")
-        key = lambda row: (self.movements[row], *np.delete(self.codes[row], at), self.rows[row]["maps"])
-        verdicts = lambda row: [(self.judged[claim][row], self.holds[claim][row]) for claim in CLAIMS]
-        first = {key(row): verdicts(row) for row in np.flatnonzero(literal)}
-        both = [first[key(row)] == verdicts(row) for row in np.flatnonzero(~literal) if key(row) in first]
-        return sum(both), len(both)
-
-    def __len__(self):
-        return len(self.rows)
-
-    def code(self, at, label):
-        return self.labels[at].index(label) if label else OVERRIDDEN
 
 
 # ---- Shares
@@ -226,25 +136,6 @@ def by_distance(part):
     differ = ((part.codes != usual) & applies).sum(axis=1)
     return [{"least": least, "most": most, **row_of(part, (least <= differ) & (differ <= most), claim)}
             for least, most in DISTANCES for claim in [HEADLINE, *TOGETHER]]
-
-
-def default(part):
-    """The option of each factor that paper.toml has."""
-    settings = dict(flat(tomllib.loads((ROOT / "reproduce" / "paper.toml").read_text())))
-    found = []
-    for factor in part.design["factor"]:
-        same = [all(settings[key] == value for key, value in flat(option.get("settings", {}))) and "settings" in option
-                for option in factor["option"]]
-        found.append(same.index(True))
-    return found
-
-
-def flat(table, path=""):
-    for key, value in table.items():
-        if isinstance(value, dict):
-            yield from flat(value, f"{path}{key}.")
-        else:
-            yield f"{path}{key}", value
 
 
 # ---- The surrogate
@@ -355,14 +246,6 @@ def explorer(chosen, part):
     }
     template = (ROOT / "reproduce" / "explorer.html").read_text()
     return template.replace("/* DATA */", json.dumps(data, separators=(",", ":")).replace("<", "\\u003c"))
-
-
-def overrides(part):
-    """For each factor and option the factors that it overrides."""
-    factors = part.design["factor"]
-    keys = [[set(key for key, _ in flat(option.get("settings", {}))) for option in factor["option"]] for factor in factors]
-    return [[[other for other in range(at) if keys[other][0] and keys[other][0] <= own] for own in options]
-            for at, options in enumerate(keys)]
 
 
 def model(found):

@@ -9,6 +9,7 @@ import re
 import shutil
 import subprocess
 import sys
+import tomllib
 
 import numpy as np
 import pytest
@@ -19,6 +20,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 SHARDS = ROOT / "docs/shown/multiverse-2/shards"
 sys.path.insert(0, str(ROOT / "reproduce"))
 
+import promising  # noqa: E402
 import surrogate  # noqa: E402
 
 
@@ -114,6 +116,34 @@ def test_the_authors_code_overrides_the_prior(part, page):
     assert equations == [] and part.factors.index("prior scatter") in code and part.factors.index("fluid") not in code
     rows = part.codes[part.codes[:, reading] == 1]
     assert len(rows) and (rows[:, code] == surrogate.OVERRIDDEN).all()
+
+
+def test_the_score_of_a_replication_is_that_of_a_study(part):
+    """By hand, of the first replication that can judge the headline."""
+    at = int(np.flatnonzero(part.judged["tree-accuracy"])[0])
+    claims = tomllib.loads((ROOT / "reproduce/scored.toml").read_text())["claim"]
+    credits = []
+    for claim in claims:
+        value, (low, high) = part.values[claim["id"]][at], part.accepted[claim["id"]]
+        distance = max(0, low - value, value - high)
+        credits.append(0 if np.isnan(value) else claim["weight"] * max(0, 1 - distance / claim["slack"]))
+    found = promising.scores(part)
+    assert found[at] == pytest.approx(sum(credits) / sum(claim["weight"] for claim in claims))
+    assert found[np.isnan(part.values["number-of-parts"])].sum() == 0 and 0 <= found.min() < found.max() <= 1
+
+
+def test_a_climb_ends_where_no_change_of_a_choice_predicts_more(part):
+    chosen = surrogate.Chosen(part.codes, promising.scores(part), part.movements, 0).surrogate
+    space = promising.Space(part)
+    assert (space.cleaned(part.codes[0]) == part.codes[0]).all(), "a replication is a configuration of the space"
+    looked_at = space.climb(part.codes[0], chosen)
+    predicted = chosen.predict(looked_at)
+    top = looked_at[predicted.argmax()]
+    assert predicted.max() > predicted[0]
+    assert chosen.predict(np.array(list(space.changes(top)))).max() <= predicted.max() + 1e-9
+    # What an option overrides has no choice, and what nothing overrides has one.
+    hidden = [other for at, option in enumerate(top) for other in space.overrides[at][option]]
+    assert set(np.flatnonzero(top == surrogate.OVERRIDDEN)) == set(hidden)
 
 
 def test_the_explorer_predicts_what_the_surrogate_predicts(part, page, tmp_path):
