@@ -9,11 +9,15 @@ pub(super) type Wrong = String;
 
 /// Name of the instruction that says from where the text after it is.
 const ORIGIN: &str = "bodyschema-origin";
+
 /// Reads XML. Entities are read as far as they do not grow out of proportion.
 pub(super) fn parsed(text: &str) -> Result<Document<'_>, Wrong> {
-    let options = ParsingOptions { allow_dtd: true, ..ParsingOptions::default() };
-    Document::parse_with_options(text, options)
-        .map_err(|error| format!("this is not well-formed XML: {error}"))
+    parse(text).map_err(|error| format!("this is not well-formed XML: {error}"))
+}
+
+/// Reads XML, with the error as the parser has it.
+pub(super) fn parse(text: &str) -> Result<Document<'_>, roxmltree::Error> {
+    Document::parse_with_options(text, ParsingOptions { allow_dtd: true, ..ParsingOptions::default() })
 }
 
 /// From where text is: the file, and the line on which it begins.

@@ -205,8 +205,10 @@ impl<'a> Bodies<'a> {
                     Some(name) => self.namings[around.naming].join(name),
                     None => self.free_name(),
                 };
-                let frame = self.frame(Element::new(format!("body `{name}`"), node), node, around)?;
-                let origin = frame.pose.translation.vector;
+                let element = Element::new(format!("body `{name}`"), node);
+                let own = self.models[around.model].defaults.pose(&element)?;
+                let origin = (around.pose * own).translation.vector;
+                let frame = self.frame(element, node, around)?;
                 let (turns, solids) = (Vec::new(), Vec::new());
                 self.links.push(Link { name, parent, origin, turns, solids, bare_mass: 0.0, named: None });
                 self.geoms.push(Vec::new());
@@ -236,7 +238,9 @@ impl<'a> Bodies<'a> {
 
     /// The frame that an element is.
     fn frame(&self, element: Element<'a>, node: Node<'a, 'a>, around: Frame<'a>) -> Result<Frame<'a>, Wrong> {
-        let pose = around.pose * self.models[around.model].defaults.pose(&element)?;
+        let defaults = &self.models[around.model].defaults;
+        let own = defaults.pose(&element)?;
+        let pose = if defaults.is_global { around.pose } else { around.pose * own };
         Ok(Frame { pose, class: node.attribute("childclass").or(around.class), ..around })
     }
 

@@ -11,8 +11,10 @@ use super::rounding::{round, rounded, significant};
 use crate::files::body::{DENSITY, PartEntry, ShapeName, SkinEntry};
 use crate::stages::agent::{Inertia, Shape, Spot, Vector3};
 
-/// Volume of the smallest solid, m³: a cube of 2 mm. What is smaller marks a place.
-const TINY: f64 = 8e-9;
+/// Volume of the smallest solid, m³: a little more than a cube of 2 mm, with which robots mark a place.
+const TINY: f64 = 1e-8;
+/// Density, kg/m³, above which a mass is not that of its shape: four times that of osmium, the densest metal.
+pub(super) const DENSEST: f64 = 1e5;
 
 /// A solid where it is in the rest pose.
 #[derive(Debug, Clone)]
@@ -120,7 +122,9 @@ pub(super) fn settled(
     notes: &mut Vec<String>,
 ) -> (Vec<Solid>, f64) {
     if let Some(missing) = missing {
-        let (others, stand_in) = (!solids.is_empty(), inertia_box.filter(|_| solids.is_empty()));
+        // A small shape beside a mesh that is missing, such as a logo, does not stand for the link.
+        let others = mass < DENSEST * solids.iter().map(Solid::bulk).sum::<f64>();
+        let stand_in = inertia_box.filter(|_| !others);
         let what = match (others, &stand_in) {
             (true, _) => "its other shapes stand for it",
             (_, Some(_)) => "a box with its inertia stands for it",
@@ -138,8 +142,35 @@ pub(super) fn settled(
             .push(format!("{word} `{name}`: {left} of {all} shapes are too small or too light and left out"));
         weigh(&mut solids, mass);
     }
+    let mut thin = 0;
+    for solid in &mut solids {
+        let thick = thickened(solid.shape);
+        if thick != solid.shape {
+            (solid.mass, solid.shape) = (Some(solid.own_mass()), thick);
+            thin += 1;
+        }
+    }
+    if thin > 0 {
+        let all = solids.len();
+        notes
+            .push(format!("{word} `{name}`: {thin} of {all} shapes are thinner than 1 mm and made so thick"));
+    }
     let bare_mass = if solids.is_empty() { mass } else { 0.0 };
     (solids, bare_mass)
+}
+
+/// A shape that is nowhere thinner than a part may be.
+fn thickened(shape: Shape) -> Shape {
+    // What is not positive is a mistake, which is refused as a part.
+    let thick = |length: f64| if length > 0.0 { length.max(THIN) } else { length };
+    match shape {
+        Shape::Cylinder { radius, length } => {
+            Shape::Cylinder { radius: thick(radius), length: thick(length) }
+        }
+        Shape::Capsule { radius, length } => Shape::Capsule { radius: thick(radius), length: thick(length) },
+        Shape::Sphere { radius } => Shape::Sphere { radius: thick(radius) },
+        Shape::Box { sides } => Shape::Box { sides: sides.map(thick) },
+    }
 }
 
 /// The least rotation that takes z to a direction; about x if it is the opposite one.

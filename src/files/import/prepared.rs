@@ -8,14 +8,11 @@ use super::document::Wrong;
 use super::joints::STAND_IN;
 use super::notes::names;
 use super::options::Options;
-use super::placed::{Link, Solid, Turn, weigh};
+use super::placed::{DENSEST, Link, Solid, Turn, weigh};
 use super::shares::{spread, wholes};
 use super::tree::Tree;
 use crate::files::body::DENSITY;
 use crate::stages::agent::Shape;
-
-/// Density, kg/m³, above which a mass is not that of its shape: four times that of osmium, the densest metal.
-const DENSEST: f64 = 1e5;
 
 /// Links that a body can have, and notes on what was changed. Messages call a link `word`.
 pub(super) fn prepared(

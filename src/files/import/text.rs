@@ -7,13 +7,15 @@ use std::path::{Path, PathBuf};
 
 use roxmltree::{Document, Node};
 
-use super::document::{Wrong, origin, parsed};
+use super::document::{Wrong, origin, parse, parsed};
 use super::located::Located;
 use super::xml::Element;
 
 /// Most bytes of a description with all that it includes, and most copies that an element may be replicated into.
 const MOST_BYTES: usize = 64 << 20;
 const MOST_COPIES: usize = 1024;
+/// Most prefixes of names that a file may use without declaring them.
+const MOST_PREFIXES: usize = 16;
 /// Attribute of `attach` in the text that is written out: what the names get at their end, if the element is replicated.
 pub(super) const SUFFIX: &str = "suffix";
 
@@ -53,14 +55,27 @@ fn read(path: &Path) -> Result<String, Wrong> {
         Err(error) => error.into_bytes().into_iter().map(char::from).collect(),
     };
     let text = text.trim_start_matches('\u{feff}');
-    Ok(match text.split_once("<?xml ") {
+    let is_before = |before: &str| before.trim_start().is_empty() || before.trim_start().starts_with("<!--");
+    let text = match text.split_once("<?xml ") {
         // Lines stay what they are.
-        Some((before, rest)) if !before.is_empty() && before.trim_start().starts_with("<!--") => {
+        Some((before, rest)) if !before.is_empty() && is_before(before) => {
             let declared = rest.split_once("?>").map_or(rest, |(_, after)| after);
             format!("{before}{declared}")
         }
         _ => text.to_owned(),
-    })
+    };
+    Ok(with_known_prefixes(text))
+}
+
+/// A text in which names have no prefix that the file does not declare: `a:b` becomes `a.b`, which nothing reads.
+fn with_known_prefixes(mut text: String) -> String {
+    for _ in 0..MOST_PREFIXES {
+        let Err(roxmltree::Error::UnknownNamespace(prefix, _)) = parse(&text) else { break };
+        for begins in ["<", "</", " ", "\t", "\n"] {
+            text = text.replace(&format!("{begins}{prefix}:"), &format!("{begins}{prefix}."));
+        }
+    }
+    text
 }
 
 /// A file whose text is written out, and those that include it.

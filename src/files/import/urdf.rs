@@ -26,12 +26,8 @@ struct Joint<'a> {
 
 /// The links of the element `robot`, each after the one that carries it. `strict` refuses attributes that are not known.
 pub(super) fn links<'a>(root: Node<'a, 'a>, files: &Located, strict: bool) -> Result<Read, Wrong> {
-    let is_macro = |node: &Node| node.tag_name().namespace().is_some_and(|space| space.contains("xacro"));
-    if let Some(node) = root.descendants().find(is_macro) {
-        let wrong = Element::new(node.tag_name().name(), node);
-        return Err(wrong.wrong("is an element of xacro; expand the file first: xacro FILE > robot.urdf"));
-    }
-    let unknown = unknown(urdf_elements(root), &URDF, strict)?;
+    let mut notes = Vec::from_iter(not_expanded(root, strict)?);
+    notes.extend(unknown(urdf_elements(root), &URDF, strict)?);
     let mut nodes = Vec::new();
     let mut places = HashMap::new();
     for node in root.children().filter(|node| node.has_tag_name("link")) {
@@ -45,6 +41,13 @@ pub(super) fn links<'a>(root: Node<'a, 'a>, files: &Located, strict: bool) -> Re
     for node in root.children().filter(|node| node.has_tag_name("joint")) {
         let name = Element::new("joint", node).needed("name")?;
         let element = labelled("joint", name, node);
+        // Some readers know the world without a link for it.
+        if !places.contains_key("world")
+            && child(node, "parent").and_then(|end| end.attribute("link")) == Some("world")
+        {
+            notes.push(format!("joint `{name}` is with the world, which is no link, and left out"));
+            continue;
+        }
         let end = |tag: &'static str| {
             let end = child(node, tag).ok_or_else(|| element.wrong(format!("lacks <{tag}>; add it")))?;
             let link = element.part(end).needed("link")?;
@@ -58,7 +61,7 @@ pub(super) fn links<'a>(root: Node<'a, 'a>, files: &Located, strict: bool) -> Re
         joints.push(Joint { element, node, parent, child });
     }
     let link_names: Vec<&str> = nodes.iter().map(|(name, _)| *name).collect();
-    let (mut links, mut notes) = (Vec::new(), Vec::from_iter(unknown));
+    let mut links = Vec::new();
     let mimics = joints.iter().filter(|joint| child(joint.node, "mimic").is_some());
     if let Some(names) = names(mimics.filter_map(|joint| joint.node.attribute("name"))) {
         notes.push(format!("joints that follow others (mimic) move by themselves {names}"));
@@ -79,6 +82,25 @@ pub(super) fn links<'a>(root: Node<'a, 'a>, files: &Located, strict: bool) -> Re
         frames.push(frame);
     }
     Ok(Read { links, notes })
+}
+
+/// Elements by which xacro builds a robot. Others call a macro, which a file without any macros no longer has.
+const BUILDS: [&str; 8] = ["macro", "include", "property", "arg", "if", "unless", "insert_block", "call"];
+
+/// A note on what is left of macros in a file that xacro has expanded.
+///
+/// # Errors
+/// If xacro still has to expand it, or if it is `strict`.
+fn not_expanded(root: Node, strict: bool) -> Result<Option<String>, Wrong> {
+    let is_xacro = |node: &Node| node.tag_name().namespace().is_some_and(|space| space.contains("xacro"));
+    let left: Vec<Node> = root.descendants().filter(is_xacro).collect();
+    let builds = left.iter().find(|node| strict || BUILDS.contains(&node.tag_name().name()));
+    if let Some(node) = builds {
+        let wrong = Element::new(node.tag_name().name(), *node);
+        return Err(wrong.wrong("is an element of xacro; expand the file first: xacro FILE > robot.urdf"));
+    }
+    let names = names(left.iter().map(|node| node.tag_name().name()));
+    Ok(names.map(|names| format!("macros of xacro that were not expanded are left out {names}")))
 }
 
 /// Links in the order in which each comes after the one that carries it, and all on one together; each with its joint and

@@ -22,8 +22,11 @@ pub(super) fn read(path: &Path) -> Result<Mesh, Wrong> {
     if size > MOST_BYTES {
         return Err(wrong(format!("has {size} bytes, but at most {MOST_BYTES} are read; simplify it")));
     }
-    let bytes = std::fs::read(path).map_err(|error| wrong(format!("cannot be read: {error}")))?;
+    let mut bytes = std::fs::read(path).map_err(|error| wrong(format!("cannot be read: {error}")))?;
     let kind = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+    if kind == "stl" {
+        mark_binary(&mut bytes);
+    }
     let text = || String::from_utf8_lossy(&bytes);
     let scene = match &*kind {
         "stl" => Loader::default().load_stl_from_slice(&bytes, name),
@@ -33,6 +36,16 @@ pub(super) fn read(path: &Path) -> Result<Mesh, Wrong> {
         _ => return Err(wrong("is none of .stl, .obj, .dae and .msh; convert it to one of them".to_owned())),
     };
     scene.map_err(|error| error.to_string()).and_then(|scene| Mesh::new(triangles(&scene)?)).map_err(wrong)
+}
+
+/// Many binary STL begin with `solid`, as text does. Their length tells them apart: a header of 80 bytes, the number of triangles, and 50
+/// bytes for each.
+fn mark_binary(bytes: &mut [u8]) {
+    let Some((header, rest)) = bytes.split_first_chunk_mut::<80>() else { return };
+    let Some((count, triangles)) = rest.split_first_chunk::<4>() else { return };
+    if triangles.len() as u64 == 50 * u64::from(u32::from_le_bytes(*count)) {
+        header[0] = b' ';
+    }
 }
 
 fn triangles(scene: &Scene) -> Result<Vec<[Column<f64>; 3]>, Wrong> {

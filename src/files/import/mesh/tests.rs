@@ -94,6 +94,7 @@ fn written(folder: &Path) -> Vec<std::path::PathBuf> {
         face.iter().for_each(|at| binary.extend(floats(&corners[*at])));
         binary.extend([0, 0]);
     }
+    let called_text = [b"solid t", &binary[7..]].concat();
     let mut msh: Vec<u8> = [4_u32, 0, 0, 4].iter().flat_map(|count| count.to_le_bytes()).collect();
     msh.extend(floats(&corners.concat()));
     msh.extend(faces.concat().iter().flat_map(|at| (*at as u32).to_le_bytes()));
@@ -115,6 +116,7 @@ fn written(folder: &Path) -> Vec<std::path::PathBuf> {
         ("t.obj", obj.into_bytes()),
         ("text.STL", text.into_bytes()),
         ("binary.stl", binary),
+        ("called-text.stl", called_text),
         ("t.msh", msh),
         ("t.dae", dae.into_bytes()),
     ];

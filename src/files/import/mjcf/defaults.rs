@@ -19,6 +19,8 @@ pub(super) struct Defaults<'a> {
     top: Vec<Node<'a, 'a>>,
     /// Sections of a class, by its name.
     classes: HashMap<&'a str, Node<'a, 'a>>,
+    /// Whether places and directions are those of the world, as MuJoCo read them before 2.3.4.
+    pub is_global: bool,
     is_in_radians: bool,
     /// Axes of Euler angles in order: small letters turn with the frame, capitals do not.
     euler: &'a str,
@@ -40,7 +42,7 @@ impl<'a> Defaults<'a> {
         let mut compiler = root.children().filter(|node| node.has_tag_name("compiler")).collect::<Vec<_>>();
         compiler.reverse();
         let setting = |key: &str| compiler.iter().find_map(|node| node.attribute(key));
-        for (key, sound) in [("angle", &["degree", "radian"][..]), ("coordinate", &["local"])] {
+        for (key, sound) in [("angle", ["degree", "radian"]), ("coordinate", ["local", "global"])] {
             if let Some(value) = setting(key).filter(|value| !sound.contains(value)) {
                 let sound = sound.join(" or ");
                 return Err(format!(
@@ -74,6 +76,7 @@ impl<'a> Defaults<'a> {
         Ok(Self {
             top,
             classes,
+            is_global: setting("coordinate") == Some("global"),
             is_in_radians: setting("angle") == Some("radian"),
             euler,
             weighs_geoms: setting("inertiafromgeom") == Some("true"),

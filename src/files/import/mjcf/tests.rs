@@ -119,6 +119,35 @@ fn anchors_and_axes_of_nested_bodies_are_in_the_common_frame() {
 }
 
 #[test]
+fn old_files_have_all_places_in_the_frame_of_the_world() {
+    let legs = |places: [&str; 4]| {
+        let [body, joint, geom, foot] = places;
+        format!(
+            "<body pos='0 0 2'><geom size='0.1'/><body pos='{body}' euler='0 0 90'><joint pos='{joint}' axis='{foot}'/>\
+             <geom size='0.1' pos='{geom}'/></body></body>"
+        )
+    };
+    let global = "<compiler coordinate='global'/>";
+    let old = world(
+        global,
+        &legs(["0 0 1", "1 0 1", "0 2 1", "0 1 0"]).replace("'0.1'/><body", "'0.1' pos='0 0 2'/><body"),
+    );
+    let new = world("", &legs(["0 0 -1", "0 -1 0", "2 0 0", "1 0 0"])).unwrap();
+    for (old, new) in old.unwrap().iter().zip(&new) {
+        near(old.origin, new.origin.into());
+        near(old.solids[0].pose.translation.vector, new.solids[0].pose.translation.vector.into());
+        for (old, new) in old.turns.iter().zip(&new.turns) {
+            let (Turn::Hinge { anchor, axis }, Turn::Hinge { anchor: a, axis: b }) = (old, new) else {
+                panic!()
+            };
+            near(*anchor, (*a).into());
+            near(*axis, (*b).into());
+        }
+    }
+    assert_eq!(new.last().unwrap().turns.len(), 1);
+}
+
+#[test]
 fn classes_give_what_elements_lack() {
     let sections = "<default><geom type='capsule' size='0.1 0.2' density='500'/><joint axis='1 0 0'/>
         <default class='limb'><geom size='0.3'/>
@@ -279,7 +308,7 @@ fn every_mistake_is_named_with_its_line_and_body() {
     for (sections, expected) in [
         ("<compiler settotalmass='x'/>", "compiler has settotalmass `x`, which must be a number"),
         ("<compiler angle='turn'/>", "compiler has angle `turn`"),
-        ("<compiler coordinate='global'/>", "compiler has coordinate `global`"),
+        ("<compiler coordinate='polar'/>", "compiler has coordinate `polar`"),
         ("<compiler eulerseq='xy'/>", "compiler has eulerseq `xy`"),
         ("<compiler eulerseq='abc'/>", "compiler has eulerseq `abc`"),
         ("<default><default/></default>", "line 1: default lacks class"),

@@ -159,10 +159,9 @@ fn the_limits_are_those_of_the_format() {
     let body =
         |geom: &str| format!("<mujoco><worldbody><body name='a'><geom {geom}/></body></worldbody></mujoco>");
     let refused = |geom: &str| imported(&body(geom), SKIN).unwrap_err();
-    assert_eq!(
-        refused("type='cylinder' size='0.0009 1' mass='1'"),
-        "part `a`: radius is 0.0009, but must be 0.001 to 1000 (m)"
-    );
+    let thin = imported(&body("type='cylinder' size='0.0009 1' mass='0.1'"), SKIN).unwrap();
+    assert_eq!(thin.file.parts[0].radius, Some(0.001));
+    assert_eq!(thin.notes, ["body `a`: 1 of 1 shapes are thinner than 1 mm and made so thick"]);
     assert_eq!(refused("size='-1' mass='1'"), "part `a`: radius is -1, but must be 0.001 to 1000 (m)");
     assert!(refused("size='2000'").contains("radius is 2000"));
     assert!(refused("size='1' pos='0 0 5000'").contains("centre is [0.0, 0.0, 5000.0]"));

@@ -120,10 +120,23 @@ fn old_encodings_and_comments_before_the_declaration_are_read() {
         name(b"<!-- by hand\n-->\n<?xml version='1.0'?>\n<robot name='r'/>"),
         ("r".to_owned(), "line 4".to_owned())
     );
+    assert_eq!(name(b"\n<?xml version='1.0'?>\n<robot name='r'/>").1, "line 3");
     assert_eq!(name(b"\xef\xbb\xbf<?xml version='1.0'?><robot name='r'/>").0, "r");
     assert_eq!(
         name(b"<?xml version='1.0' encoding='ISO-8859-1'?><robot name='m\xfcller'/>").0,
         "m\u{fc}ller"
     );
     assert_eq!(name(b"<!DOCTYPE robot [<!ENTITY n 'x'>]><robot name='&n;'/>").0, "x");
+}
+
+#[test]
+fn a_prefix_that_is_not_declared_is_no_mistake() {
+    let text = of(&[("m.urdf", b"<robot name='r'><s:camera t:a='1'/><link name='l'/><s:b>x</s:b></robot>")])
+        .unwrap();
+    let names: Vec<String> = elements(&text).into_iter().map(|(name, _)| name).collect();
+    assert_eq!(names, ["r", "s.camera", "l", "s.b"]);
+    let declared = "<robot name='r' xmlns:s='a'><s:camera/></robot>";
+    assert_eq!(of(&[("m.urdf", declared.as_bytes())]).unwrap(), declared);
+    let many = (0..100).map(|at| format!("<p{at}:a/>")).collect::<String>();
+    assert!(of(&[("m.xml", format!("<mujoco>{many}</mujoco>").as_bytes())]).unwrap_err().contains("prefix"));
 }

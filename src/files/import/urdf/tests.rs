@@ -189,6 +189,55 @@ fn what_only_marks_a_place_is_left_out() {
 }
 
 #[test]
+fn what_is_left_of_macros_and_the_world_are_left_out_with_a_note() {
+    let text = links_of("a b")
+        + &joint("fixed", "world", "a", "")
+        + &joint("revolute", "a", "b", "")
+        + "<x:camera xmlns:x='http://www.ros.org/wiki/xacro'/>";
+    let found = read_in(Path::new(""), &text).unwrap();
+    assert_eq!(found.links.len(), 2);
+    let expected = [
+        "macros of xacro that were not expanded are left out (1): camera",
+        "joint `world-a` is with the world, which is no link, and left out",
+    ];
+    assert_eq!(found.notes, expected);
+    let world = read_in(Path::new(""), &(text + "<link name='world'/>")).unwrap();
+    assert_eq!((world.links.len(), world.notes.len()), (3, 1), "a link of that name is one");
+}
+
+#[test]
+fn a_small_shape_beside_a_mesh_that_is_missing_does_not_stand_for_the_link() {
+    let link = |radius: &str, mass: &str| {
+        format!(
+            "<link name='a'><inertial><mass value='{mass}'/><inertia ixx='0.1' iyy='0.1' izz='0.1'/></inertial>\
+             <collision>{MESH}</collision><collision><geometry><sphere radius='{radius}'/></geometry></collision></link>"
+        )
+    };
+    let note = |radius, mass| {
+        let Read { links, notes } = read_in(Path::new(""), &link(radius, mass)).unwrap();
+        assert!(
+            (links[0].solids.iter().map(Solid::own_mass).sum::<f64>() - mass.parse::<f64>().unwrap()).abs()
+                < 1e-9
+        );
+        (links[0].solids.len(), notes.concat())
+    };
+    let (count, said) = note("0.1", "10");
+    assert!(count == 1 && said.contains("its other shapes stand for it"), "{said}");
+    let (count, said) = note("0.01", "10");
+    assert!(count == 2 && said.contains("a box with its inertia stands for it"), "{said}");
+}
+
+#[test]
+fn what_is_thinner_than_a_part_may_be_becomes_thicker_and_keeps_its_mass() {
+    let disc = "<link name='a'><collision><geometry><cylinder radius='0.1' length='0.0001'/></geometry></collision></link>";
+    let Read { links, notes } = read_in(Path::new(""), disc).unwrap();
+    let [solid] = &links[0].solids[..] else { panic!() };
+    assert_eq!(solid.shape, Shape::Cylinder { radius: 0.1, length: 0.001 });
+    assert!((solid.own_mass() - 1000.0 * std::f64::consts::PI * 0.01 * 0.0001).abs() < 1e-12);
+    assert_eq!(notes, ["link `a`: 1 of 1 shapes are thinner than 1 mm and made so thick"]);
+}
+
+#[test]
 fn links_that_are_no_tree_are_refused() {
     for (text, expected) in [
         (links_of("a a"), "link `a` exists twice"),
