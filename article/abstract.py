@@ -28,8 +28,8 @@ def text():
         "The rate depends on choices that the paper does not state, above all on whether the fluid also pushes the body, as in our default.",
         "In a fluid that is only felt, a body with locked joints feels nothing but the drift of the engine;",
         "there, our default finds hardly any eligible sample at the published coordination.",
-        f"Of {of('universes')} other replications in such a fluid, {of('universes-none')} have no eligible sample,",
-        f"and none of the other {of('universes-some')} comes within ten points of the published rate.",
+        f"Of {of('universes')} small replications that take other reasonable choices, {of('universes-judged')} have an eligible sample,",
+        f"and {of('universes-hold')} of these come within ten points of the published rate.",
         "We list what the paper would have to state for these choices to close.",
     ]
     return " ".join(sentences)

@@ -243,44 +243,48 @@ def search():
 
 def multiverse(published):
     folder = "docs/shown/multiverse"
-    low, high = published["tree-accuracy"]["accept"]
-    source = f"{folder}/study.csv.gz"
-    rows = [row for row in table(source) if row["claim"] == "tree-accuracy"]
-    found = [float(row["value"]) for row in rows if row["value"]]
-    value("universes", thousands(len(rows)), source)
-    value("universes-none", len(rows) - len(found), source)
-    value("universes-some", len(found), source)
-    value("universes-below", sum(rate < low for rate in found), source)
-    value("universes-zero", sum(rate == 0 for rate in found), source)
-    value("universes-above", sum(rate > high for rate in found), source)
-    says("no specification is within the range", all(rate < low or rate > high for rate in found))
-    source = f"{folder}/configurations.csv.gz"
-    rows = table(source)
-    value("universes-resolved", sum(row["resolved"] == "true" for row in rows), source)
-    value("movements", len({row["movement"] for row in rows}), source)
+    source = "reproduce/multiverse.toml"
+    draws = tomllib.loads(read(source))["draws"]
+    planned = draws["movements"]
+    value("movements-planned", planned, source)
+    value("universes-planned", thousands(planned * draws["distances"] * draws["maps"] * draws["inferences"]), source)
     source = f"{folder}/shares.csv"
-    shares = {row["claim"]: row for row in table(source) if row["group"] == "all"}
-    resolved = {row["claim"]: row for row in table(source) if row["group"] == "resolved"}
-    changes = [float(row["share"]) - float(shares[claim]["share"]) for claim, row in resolved.items()]
-    says("shares among resolved specifications hardly differ", max(map(abs, changes)) < 0.03)
-    value("share-tree-high", percent(shares["tree-accuracy"]["high"]), source)
-    for name, claim in {"parts": "number-of-parts", "ari": "ari-over-coordination", "p": "best-coordination"}.items():
-        value(f"share-{name}", percent(shares[claim]["share"]), source)
-    source = f"{folder}/joint.csv"
-    joint = table(source)[0]
-    value("joint-expected", percent(joint["expected"]), source)
-    value("joint-n", joint["n"], source)
-    source = "docs/shown/multiverse-held-out/shares.csv"
-    other = {row["claim"]: row for row in table(source) if row["group"] == "all"}
-    value("held-out", other["tree-accuracy"]["n"], source)
-    inside = [float(row["low"]) <= float(other[claim]["share"]) <= float(row["high"]) for claim, row in shares.items()]
-    value("held-out-inside", f"{sum(inside)} of {len(inside)}", source)
-    source = f"{folder}/variance.csv"
-    single = [row for row in table(source) if row["claim"] == "tree-accuracy" and not row["with"]]
-    first = max(single, key=lambda row: float(row["share"]))
-    says("the edge weight has the largest share of the variance", first["factor"] == "edge weight")
-    says("no single choice decides a fifth of the variance of the tree accuracy", float(first["share"]) < 0.2)
-    value("variance-share", percent(first["share"]), source)
+    shares = {(row["part"], row["group"], row["claim"]): row for row in table(source)}
+    own = lambda claim, group="all": shares["multiverse", group, claim]
+    movements = int(own("number-of-parts")["movements"])
+    value("movements", movements, source)
+    flag("multiverse-complete", movements == planned)
+    headline = own("tree-accuracy")
+    value("universes", thousands(headline["n"]), source)
+    value("universes-judged", thousands(headline["judged"]), source)
+    value("universes-hold", thousands(headline["holds"]), source)
+    value("universes-resolved", thousands(own("tree-accuracy", "resolved")["n"]), source)
+    value("resolved-share", share(own("tree-accuracy", "resolved")), source)
+    names = {"tree": "tree-accuracy", "d": "dependence on d", "p": "dependence on p", "parts": "number-of-parts", "ari": "ari-over-coordination"}
+    for name, claim in names.items():
+        value(f"share-{name}", share(own(claim)), source)
+    source = f"{folder}/distribution.csv"
+    [rates] = table(source)
+    for name in ["below", "zero", "above"]:
+        value(f"rates-{name}", rates[name], source)
+    source = f"{folder}/near.csv"
+    near = next(row for row in table(source) if row["least"] == "0" and row["claim"] == "tree-accuracy")
+    says("the nearest replications differ in at most two choices", near["most"] == "2")
+    value("near", near["n"], source)
+    value("near-judged", near["judged"], source)
+    value("near-share", share(near), source)
+    source = f"{folder}/questions.csv"
+    questions = table(source)
+    answers = [name for name in questions[0] if name not in ("factor", "all") and not name.endswith(("_low", "_high"))]
+    value("answers", f"{', '.join(answers[:-1])} and {answers[-1]}", source)
+    for at, row in enumerate(questions[:3], 1):
+        value(f"question-{at}", row["factor"], source)
+        value(f"question-{at}-share", share(row, "all", "all_low", "all_high"), source)
+
+
+def share(row, middle="share", low="low", high="high"):
+    """A share with its interval."""
+    return f"{100 * float(row[middle]):.0f} % ({100 * float(row[low]):.0f} to {100 * float(row[high]):.0f})"
 
 
 # ---- Fluid coupling, departures of the authors' code, time step

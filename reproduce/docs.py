@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Put the results of finished runs into the repository: reproduce/docs.py [RESULTS]
 
-RESULTS is the folder that holds confirm, exp1, exp2, sensitivity, ablation, step, momentum, multiverse, multiverse-held-out,
-mixing and bodies (default: results/). It updates
+RESULTS is the folder that holds confirm, exp1, exp2, sensitivity, ablation, step, momentum, mixing and bodies (default: results/).
+It updates
 
 - docs/shown/: for each run and study its tables (large ones packed by gzip), its pictures, and its page as README.md; for confirm and
   the two experiments also their manifests;
@@ -54,7 +54,7 @@ FLUID = ["physics.fluid_density", "physics.angular_momentum", "sense.threshold"]
 def main():
     results = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "results"
     experiments = [experiment_1, experiment_2, confirmation_1, confirmation_2]
-    studies = [sensitivity, ablation, shorter_step, momentum, multiverse, held_out, mixing, bodies]
+    studies = [sensitivity, ablation, shorter_step, momentum, mixing, bodies]
     for step in [*experiments, *studies]:
         try:
             step(results)
@@ -288,50 +288,6 @@ def shorter_step(results):
 
 def momentum(results):
     study(results / "momentum", ["configurations.csv", "study.csv"])
-
-
-def multiverse(results):
-    tables = ["configurations.csv", "study.csv", "headline.csv", "shares.csv", "variance.csv", "joint.csv"]
-    study(results / "multiverse", tables)
-
-
-def held_out(results):
-    """The section of the multiverse's page on the multiverse of another seed."""
-    manifest(results / "multiverse-held-out")
-    own, other = (read_shares(results / name) for name in ["multiverse", "multiverse-held-out"])
-    rows = [
-        "## Another seed\n",
-        "The same design with other bodies, movements and configurations (`reproduce/multiverse-held-out.sh`): all "
-        f"{other['all', 'tree-accuracy']['n']} of them. Within: whether that share lies in the interval of the large "
-        "multiverse. [Its shares](../multiverse-held-out/shares.csv).\n",
-        "| claim | share | of the other seed | within |",
-        "|---|---|---|---|",
-    ]
-    within = 0
-    for (group, claim), share in own.items():
-        if group == "all":
-            inside = float(share["low"]) <= float(other[group, claim]["share"]) <= float(share["high"])
-            within += inside
-            cells = [claim, percent(share), percent(other[group, claim]), "yes" if inside else "no"]
-            rows.append(f"| {' | '.join(cells)} |")
-    count = len(rows) - 4
-    rows.append(f"\n{within} of {count} shares lie within.\n")
-    copy([results / "multiverse-held-out" / "shares.csv"], SHOWN / "multiverse-held-out")
-    page = SHOWN / "multiverse" / "README.md"
-    text = re.sub(r"## Another seed\n.*?(?=## The options\n)", "", page.read_text(), flags=re.S)
-    before, choices = text.split("## The options\n")
-    section = "\n".join(rows)
-    page.write_text(f"{before}{section}\n## The options\n{choices}")
-
-
-def read_shares(folder):
-    with open(folder / "shares.csv", newline="") as file:
-        return {(row["group"], row["claim"]): row for row in csv.DictReader(file)}
-
-
-def percent(share):
-    value, low, high = (f"{100 * float(share[key]):.1f}" for key in ["share", "low", "high"])
-    return f"{value} % ({low} to {high})"
 
 
 def bodies(results):

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Does any configuration do it all? The most promising ones: reproduce/promising.py [FOLDER] [--out FILE]
 
-Reads what `reproduce/multiverse-2.sh gather` wrote into FOLDER (default: results/multiverse-2/gathered). Writes a design of the ten
+Reads what `reproduce/multiverse.sh gather` wrote into FOLDER (default: results/multiverse/gathered). Writes a design of the ten
 configurations that should reproduce the paper's claims best, by a surrogate of the score: reproduce/promising.toml, which
 reproduce/promising.sh runs. Needs Python 3.11 and the packages of python/requirements.txt. Status: 0, or 2 on an error.
 """
@@ -31,12 +31,12 @@ APART = 3
 
 def main():
     parser = argparse.ArgumentParser(description="Write a design of the most promising configurations.")
-    parser.add_argument("folder", nargs="?", type=pathlib.Path, default=ROOT / "results" / "multiverse-2" / "gathered")
+    parser.add_argument("folder", nargs="?", type=pathlib.Path, default=ROOT / "results" / "multiverse" / "gathered")
     parser.add_argument("--out", type=pathlib.Path, default=ROOT / "reproduce" / "promising.toml")
     arguments = parser.parse_args()
-    parts = [Part(arguments.folder / name) for name in ("multiverse-2", "multiverse-2-near", "multiverse-2-held-out")]
+    parts = [Part(arguments.folder / name) for name in ("multiverse", "multiverse-near", "multiverse-held-out")]
     if not len(parts[0]):
-        fail(f"{arguments.folder}: has no multiverse-2; run reproduce/multiverse-2.sh gather first")
+        fail(f"{arguments.folder}: has no multiverse; run reproduce/multiverse.sh gather first")
     whole, near, held_out = (part.literal() for part in parts)
     fitted = [part for part in (whole, near) if len(part)]
     codes = np.concatenate([part.codes for part in fitted])

@@ -1,4 +1,4 @@
-"""The replications of a multiverse, as `reproduce/multiverse-2.sh gather` writes them: multiverse-2.py and promising.py read them."""
+"""The replications of a multiverse, as `reproduce/multiverse.sh gather` writes them: multiverse.py and promising.py read them."""
 
 import copy
 import tomllib

@@ -133,6 +133,8 @@ fn shards_give_the_bytes_of_one_run_and_a_failure_is_a_result() {
     // What a killed process may leave.
     fs::create_dir_all(at("shards/checkpoints/of-a-killed-shard")).unwrap();
     fs::write(movements.join("half.json.bodyschema.partial"), "{").unwrap();
+    // What a comment says is no part of a design.
+    fs::write(at("design.toml"), format!("# Four movements.\n{DESIGN}")).unwrap();
     shard("1/3", 1);
     let early = bodyschema(folder.path(), "study design.toml --gather --out shards");
     let message = String::from_utf8(early.stderr).unwrap();

@@ -1,8 +1,7 @@
-"""The page of the multiverse, reproduce/multiverse-2.py: its surrogate, its intervals, and what its explorer predicts."""
+"""The page of the multiverse, reproduce/multiverse.py: its surrogate, its intervals, and what its explorer predicts."""
 
 import csv
 import gzip
-import importlib.util
 import json
 import pathlib
 import re
@@ -17,28 +16,21 @@ import pytest
 pytest.importorskip("sklearn")
 pytest.importorskip("matplotlib")
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-SHARDS = ROOT / "docs/shown/multiverse-2/shards"
+SHARDS = ROOT / "docs/shown/multiverse/shards"
 sys.path.insert(0, str(ROOT / "reproduce"))
 
+import multiverse  # noqa: E402
 import promising  # noqa: E402
 import surrogate  # noqa: E402
 
 
 @pytest.fixture(scope="module")
-def page():
-    spec = importlib.util.spec_from_file_location("multiverse", ROOT / "reproduce/multiverse-2.py")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
-@pytest.fixture(scope="module")
-def part(page, tmp_path_factory):
+def part(tmp_path_factory):
     """The first shard of the committed ones."""
     folder = tmp_path_factory.mktemp("gathered")
-    for file in (SHARDS / "multiverse-2/movements-01-04").glob("*.gz"):
+    for file in (SHARDS / "multiverse/movements-01-04").glob("*.gz"):
         (folder / file.stem).write_bytes(gzip.decompress(file.read_bytes()))
-    return page.Part(folder).literal()
+    return multiverse.Part(folder).literal()
 
 
 def made_up(movements, seed):
@@ -90,29 +82,29 @@ def test_an_overridden_choice_agrees_with_nothing():
     assert surrogate.kernel(np.array([[none, 1]]), np.array([[none, 1], [0, 1]]), 0.0).tolist() == [[0.5, 0.5]]
 
 
-def test_intervals_of_shares_hold_the_truth(page):
+def test_intervals_of_shares_hold_the_truth():
     """Movements differ, so an interval as of independent configurations would be far too narrow."""
     random = np.random.default_rng(5)
     inside = 0
     for _ in range(60):
         rates = random.beta(1, 2, size=30)
         holds = random.random((30, 8)) < rates[:, None]
-        _, low, high = page.share(holds.ravel(), np.repeat(np.arange(30), 8))
+        _, low, high = multiverse.share(holds.ravel(), np.repeat(np.arange(30), 8))
         inside += low <= 1 / 3 <= high
         assert high - low < 0.45, "no wider than that of 17 independent trials"
     assert inside >= 52, "with 95 %, it is less in one of 100 runs"
-    assert page.share(np.zeros(8, bool), np.arange(8))[2] > 0.3, "none of eight is not zero"
+    assert multiverse.share(np.zeros(8, bool), np.arange(8))[2] > 0.3, "none of eight is not zero"
 
 
-def test_the_default_is_a_point_of_the_space(part, page):
-    chosen = {name: labels[at] for name, labels, at in zip(part.factors, part.labels, page.default(part))}
+def test_the_default_is_a_point_of_the_space(part):
+    chosen = {name: labels[at] for name, labels, at in zip(part.factors, part.labels, multiverse.default(part))}
     assert chosen["fluid"] == "pushes back, 1010" and chosen["prior scatter"] == "0.5 x covariance / K^(2/d)"
     assert chosen["sweeps"] == "300" and chosen["number of levels"] == "8" and chosen["controller"] == "slow servo"
 
 
-def test_the_authors_code_overrides_the_prior(part, page):
+def test_the_authors_code_overrides_the_prior(part):
     reading = part.factors.index("reading")
-    equations, code, _ = page.overrides(part)[reading]
+    equations, code, _ = multiverse.overrides(part)[reading]
     assert equations == [] and part.factors.index("prior scatter") in code and part.factors.index("fluid") not in code
     rows = part.codes[part.codes[:, reading] == 1]
     assert len(rows) and (rows[:, code] == surrogate.OVERRIDDEN).all()
@@ -146,20 +138,20 @@ def test_a_climb_ends_where_no_change_of_a_choice_predicts_more(part):
     assert set(np.flatnonzero(top == surrogate.OVERRIDDEN)) == set(hidden)
 
 
-def test_the_explorer_predicts_what_the_surrogate_predicts(part, page, tmp_path):
+def test_the_explorer_predicts_what_the_surrogate_predicts(part, tmp_path):
     if not shutil.which("chromium"):
         pytest.skip("chromium is missing")
-    chosen = page.surrogates(part)
-    text = page.explorer(chosen, part)
+    chosen = multiverse.surrogates(part)
+    text = multiverse.explorer(chosen, part)
     (tmp_path / "explorer.html").write_text(text)
     command = ["chromium", "--headless", "--no-sandbox", "--disable-dev-shm-usage", f"--user-data-dir={tmp_path / 'chromium'}",
                "--dump-dom", (tmp_path / "explorer.html").as_uri()]
     seen = subprocess.run(command, capture_output=True, text=True, check=True, timeout=120).stdout
     body = re.search(r'<tbody id="predicted">(.*?)</tbody>', seen, re.S)[1]
     rows = [re.findall(r"<t[hd][^>]*>(.*?)</t[hd]>", row) for row in body.split("</tr>") if row]
-    assert [row[0] for row in rows] == list(page.CLAIMS.values())
-    usual = np.array([page.default(part)])
-    parts = rows[list(page.CLAIMS).index("number-of-parts")]
+    assert [row[0] for row in rows] == list(multiverse.CLAIMS.values())
+    usual = np.array([multiverse.default(part)])
+    parts = rows[list(multiverse.CLAIMS).index("number-of-parts")]
     _, _, fitted = chosen["number-of-parts", "value"]
     # Its weights have four digits.
     assert float(parts[2].split()[0]) == pytest.approx(fitted.surrogate.predict(usual)[0], abs=0.02)
@@ -174,8 +166,8 @@ def test_the_page_is_of_the_committed_shards():
     groups = ("all", "ARI of 1.00: rounds to 1.00")
     rows = [row for row in csv.DictReader(shares.open()) if row["group"] in groups and row["claim"] == "tree-accuracy"]
     counted = {name: sum(int(row["n"]) for row in rows if row["part"] == name) for name in {row["part"] for row in rows}}
-    for name in ("multiverse-2", "multiverse-2-near", "multiverse-2-held-out"):
+    for name in ("multiverse", "multiverse-near", "multiverse-held-out"):
         tables = sorted((SHARDS / name).glob("*/configurations.csv.gz"))
         assert counted.get(name, 0) == sum(len(list(csv.DictReader(gzip.open(table, "rt")))) for table in tables), name
     data = json.loads(re.search(r"const data = (.*);\n", (SHARDS.parent / "explorer.html").read_text())[1])
-    assert len(data["codes"]) == counted["multiverse-2"] // 2
+    assert len(data["codes"]) == counted["multiverse"] // 2

@@ -15,7 +15,7 @@ use crate::tasks::seeds::used_before;
 /// Runs many configurations of the experiments on shared simulations, and says by which the paper's claims hold.
 ///
 /// A design says which: a named list, one change at a time around a base, a grid, or configurations that are drawn evenly from all
-/// combinations of options. The bundled designs are ablation, step, momentum, sensitivity, multiverse and multiverse-held-out;
+/// combinations of options. The bundled designs are ablation, step, momentum, sensitivity, multiverse, multiverse-near and multiverse-held-out;
 /// reproduce/NAME.toml explains each, and docs/reference.md the grammar.
 ///
 /// Writes into DIR: study.md (the report), figures/*.svg, configurations.csv (a row for each configuration), study.csv (a row for

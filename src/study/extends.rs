@@ -9,11 +9,12 @@ use crate::settings::{read_toml, toml_message};
 use crate::tasks::error::ExperimentError;
 
 /// The designs that the program brings: those of `reproduce/`, by name.
-pub(super) const BUNDLED: [(&str, &str); 7] = [
+pub(super) const BUNDLED: [(&str, &str); 8] = [
     ("ablation", include_str!("../../reproduce/ablation.toml")),
     ("momentum", include_str!("../../reproduce/momentum.toml")),
     ("multiverse", include_str!("../../reproduce/multiverse.toml")),
     ("multiverse-held-out", include_str!("../../reproduce/multiverse-held-out.toml")),
+    ("multiverse-near", include_str!("../../reproduce/multiverse-near.toml")),
     ("scored", include_str!("../../reproduce/scored.toml")),
     ("sensitivity", include_str!("../../reproduce/sensitivity.toml")),
     ("step", include_str!("../../reproduce/step.toml")),

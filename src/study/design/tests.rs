@@ -60,12 +60,6 @@ fn ours() -> Vec<String> {
     all
 }
 
-/// The bundled designs and those of `reproduce/` that are not.
-fn around_the_default(name: &str) -> Design {
-    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("reproduce").join(name);
-    Design::parse(&DesignText::read(&path, None).unwrap()).unwrap()
-}
-
 /// What is missing for a design to have the default among its points.
 fn lacks_default(design: &Design) -> Vec<&str> {
     let lacks = |factor: &&Factor| factor.of_base(design).is_none();
@@ -74,7 +68,7 @@ fn lacks_default(design: &Design) -> Vec<&str> {
 
 #[test]
 fn the_default_is_a_point_of_the_multiverse() {
-    let design = around_the_default("multiverse-2.toml");
+    let design = bundled("multiverse");
     assert_eq!(lacks_default(&design), [""; 0]);
     // All base options together are the default but for how much is run.
     let mut all = Table::new();
@@ -112,7 +106,7 @@ fn forgotten(design: &Design) -> Vec<String> {
 
 #[test]
 fn every_setting_that_is_ours_is_a_factor_of_the_multiverse_or_has_a_reason_not_to_be() {
-    let design = around_the_default("multiverse-2.toml");
+    let design = bundled("multiverse");
     assert_eq!(forgotten(&design), [""; 0]);
     let mut other = design.clone();
     other.factors.retain(|factor| factor.name != "concentration");
@@ -128,10 +122,8 @@ fn every_setting_that_is_ours_is_a_factor_of_the_multiverse_or_has_a_reason_not_
 fn its_draws_are_as_many_as_they_say_and_the_code_is_taken_whole() {
     let factor =
         |design: &Design, name: &str| design.factors.iter().position(|factor| factor.name == name).unwrap();
-    for (name, count) in
-        [("multiverse-2.toml", 2048), ("multiverse-2-near.toml", 232), ("multiverse-2-held-out.toml", 320)]
-    {
-        let design = around_the_default(name);
+    for (name, count) in [("multiverse", 2048), ("multiverse-near", 232), ("multiverse-held-out", 320)] {
+        let design = bundled(name);
         let all = plan(&design).unwrap();
         assert_eq!(all.len(), count, "{name}");
         // Every replication is judged both ways.
@@ -144,14 +136,14 @@ fn its_draws_are_as_many_as_they_say_and_the_code_is_taken_whole() {
         }
     }
     // Of each body map of the large one, three are read by the equations and one by the code.
-    let design = around_the_default("multiverse-2.toml");
+    let design = bundled("multiverse");
     let all = plan(&design).unwrap();
     let by_code = all.iter().filter(|one| one.labels[factor(&design, "reading")] != "equations").count();
     assert_eq!(by_code, 512);
     let classical = all.iter().filter(|one| one.labels[factor(&design, "scaling")] == "classical").count();
     assert_eq!(classical, 1024);
     // Around the default, seven of ten choices and more are its own.
-    let near = around_the_default("multiverse-2-near.toml");
+    let near = bundled("multiverse-near");
     let base: Vec<&str> = near
         .factors
         .iter()

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""The page of the multiverse: reproduce/multiverse-2.py [FOLDER] [--out FOLDER]
+"""The page of the multiverse: reproduce/multiverse.py [FOLDER] [--out FOLDER]
 
-FOLDER holds what `reproduce/multiverse-2.sh gather` makes (default: results/multiverse-2/gathered). Writes into the folder of --out, which
-is docs/shown/multiverse-2: README.md, its tables and pictures, and explorer.html, which predicts what a choice of settings would give.
+FOLDER holds what `reproduce/multiverse.sh gather` makes (default: results/multiverse/gathered). Writes into the folder of --out, which
+is docs/shown/multiverse: README.md, its tables and pictures, and explorer.html, which predicts what a choice of settings would give.
 Needs Python 3.11 and the packages of python/requirements.txt. Takes some minutes. Status: 0, or 2 on an error.
 """
 
@@ -22,7 +22,7 @@ try:
     from replications import CLAIMS, HEADLINE, TOGETHER, Part, default, overrides
     from surrogate import OVERRIDDEN, Chosen, Surrogate, knowing
 except ModuleNotFoundError as missing:
-    sys.exit(f"multiverse-2: needs {missing.name}; run: pip install -r python/requirements.txt")
+    sys.exit(f"multiverse: needs {missing.name}; run: pip install -r python/requirements.txt")
 
 from estimated import ROOT, fail, wilson, write
 
@@ -48,15 +48,15 @@ DISTANCES = [(0, 2), (3, 5), (6, 8), (9, 99)]
 
 def main():
     parser = argparse.ArgumentParser(description="Make the page of the multiverse.")
-    parser.add_argument("folder", nargs="?", type=pathlib.Path, default=ROOT / "results" / "multiverse-2" / "gathered")
-    parser.add_argument("--out", type=pathlib.Path, default=ROOT / "docs" / "shown" / "multiverse-2")
+    parser.add_argument("folder", nargs="?", type=pathlib.Path, default=ROOT / "results" / "multiverse" / "gathered")
+    parser.add_argument("--out", type=pathlib.Path, default=ROOT / "docs" / "shown" / "multiverse")
     arguments = parser.parse_args()
-    parts = {name: Part(arguments.folder / name) for name in ("multiverse-2", "multiverse-2-near", "multiverse-2-held-out")}
-    if not len(parts["multiverse-2"]):
-        fail(f"{arguments.folder}: has no multiverse-2; run reproduce/multiverse-2.sh gather first")
+    parts = {name: Part(arguments.folder / name) for name in ("multiverse", "multiverse-near", "multiverse-held-out")}
+    if not len(parts["multiverse"]):
+        fail(f"{arguments.folder}: has no multiverse; run reproduce/multiverse.sh gather first")
     arguments.out.mkdir(parents=True, exist_ok=True)
     shares = [row for name, part in parts.items() if len(part) for row in shares_of(name, part)]
-    same = parts["multiverse-2"].same_verdicts()
+    same = parts["multiverse"].same_verdicts()
     # From here on by the literal meaning alone, so that no replication counts twice.
     parts = {name: part.literal() for name, part in parts.items()}
     whole, near, held_out = parts.values()
@@ -72,10 +72,12 @@ def main():
     around = by_distance(near) if len(near) else []
     if around:
         write(arguments.out / "near.csv", list(around[0]), around)
-    picture(arguments.out / "shares.svg", [row for row in shares if row["part"] == "multiverse-2" and row["group"] == "all"])
+    picture(arguments.out / "shares.svg", [row for row in shares if row["part"] == "multiverse" and row["group"] == "all"])
     for name in ("variance.csv", "joint.csv"):
-        shutil.copy(arguments.folder / "multiverse-2" / name, arguments.out / name)
-    shutil.copy(arguments.folder / "multiverse-2" / "figures" / "tree-accuracy.svg", arguments.out / "tree-accuracy.svg")
+        shutil.copy(arguments.folder / "multiverse" / name, arguments.out / name)
+    shutil.copy(arguments.folder / "multiverse" / "figures" / "tree-accuracy.svg", arguments.out / "tree-accuracy.svg")
+    rates = distribution(whole)
+    write(arguments.out / "distribution.csv", list(rates), [rates])
     (arguments.out / "explorer.html").write_text(explorer(chosen, whole))
     (arguments.out / "README.md").write_text(page(parts, shares, same, choices, around, questions, errors))
 
@@ -311,7 +313,7 @@ def table(header, rows):
 def page(parts, shares, same, choices, around, questions, errors):
     whole, near, held_out = parts.values()
     of = {(row["part"], row["group"], row["claim"]): row for row in shares}
-    own = lambda claim, group="all": of["multiverse-2", group, claim]
+    own = lambda claim, group="all": of["multiverse", group, claim]
     headline = own(HEADLINE)
     lines = ["# A multiverse that contains today's default", "", *answer(whole, own, questions)]
     lines += [
@@ -323,16 +325,16 @@ def page(parts, shares, same, choices, around, questions, errors):
         "A replication takes one reasonable value for each setting that the paper leaves open. It is small:",
         "four simulations with six chains each, seven d (2, 5, 8, 9, 10, 14 and 15) and five p (0, 0.4, 0.8, 0.9 and 0.95). \"Each d\" and",
         "\"each p\" are of these, as far as they have an eligible sample. An ARI of 1.00 is taken literally, as exactly 1; with 0.995 and more, all",
-        f"verdicts are the same in {same[0]:,} of {same[1]:,} replications. [multiverse-2.toml](../../../reproduce/multiverse-2.toml) has all values, and the",
+        f"verdicts are the same in {same[0]:,} of {same[1]:,} replications. [multiverse.toml](../../../reproduce/multiverse.toml) has all values, and the",
         "reason for each. It was written before the first run. A claim about trees *can be judged* if samples are eligible: right number of",
         "parts, and an adjusted Rand index (ARI) of 1. Intervals are 95 % intervals over resamples of the movements. They are never narrower than",
         "Wilson's for as many trials as there are movements, which decides where a share is 0 or 100 %.",
         "",
         f"The seeds of the movements are {SEED + 1:,} on. Made by:",
         "",
-        "    reproduce/multiverse-2.sh            # runs what is left",
-        "    reproduce/multiverse-2.sh gather",
-        "    python3 reproduce/multiverse-2.py    # this page",
+        "    reproduce/multiverse.sh            # runs what is left",
+        "    reproduce/multiverse.sh gather",
+        "    python3 reproduce/multiverse.py    # this page",
         "",
         "## In what share does each claim hold?",
         "",
@@ -356,7 +358,7 @@ def page(parts, shares, same, choices, around, questions, errors):
         "",
         "## Where does the published number lie?",
         "",
-        *distribution(whole),
+        *distribution_in_words(whole),
         "",
         "![Specification curve of the tree accuracy](tree-accuracy.svg)",
         "",
@@ -365,7 +367,7 @@ def page(parts, shares, same, choices, around, questions, errors):
     ]
     if around:
         lines += [
-            f"The {len(near)} replications of [multiverse-2-near.toml](../../../reproduce/multiverse-2-near.toml) stay near today's default. They",
+            f"The {len(near)} replications of [multiverse-near.toml](../../../reproduce/multiverse-near.toml) stay near today's default. They",
             "differ from it in the number of choices in the first column. Shares are as above. All: [near.csv](near.csv).",
             "",
             *table(["choices that differ", "n", "tree accuracy: judged, holds", *(f"{name}: judged, holds" for name in TOGETHER)],
@@ -389,7 +391,7 @@ def page(parts, shares, same, choices, around, questions, errors):
         "",
         "The surrogate predicts a claim's value, or whether it can be judged, from the choices: ridge regression on all single choices and all",
         "pairs ([surrogate.py](../../../reproduce/surrogate.py)). It is tested on movements that it has not seen (cross-validation) and on the",
-        "replications of [multiverse-2-held-out.toml](../../../reproduce/multiverse-2-held-out.toml), to which nothing is fitted. *Explained* is the",
+        "replications of [multiverse-held-out.toml](../../../reproduce/multiverse-held-out.toml), to which nothing is fitted. *Explained* is the",
         "share of the variance; below 0, the mean would predict better. The settings of the surrogate were chosen by the same cross-validation, so its",
         "own numbers are a little too good; those of held-out movements are not. All: [surrogate.csv](surrogate.csv).",
         "",
@@ -473,22 +475,37 @@ def distance_of(row):
 
 
 def distribution(part):
-    values = part.values[HEADLINE]
-    has = ~np.isnan(values)
+    """How many tree accuracies are where, and their quartiles; a row of distribution.csv."""
+    rates = part.values[HEADLINE]
+    found = rates[~np.isnan(rates)]
     low, high = part.accepted[HEADLINE]
-    published = next(claim for claim in tomllib.loads((ROOT / "reproduce" / "published.toml").read_text())["claim"] if claim["id"] == HEADLINE)
-    found, number = values[has], published["published"]
-    low_ends, high_ends = part.ends[HEADLINE][has].T
-    reach = ((low_ends <= number) & (number <= high_ends)).sum()
-    if not len(found):
+    published = published_rate()["published"]
+    ends_low, ends_high = part.ends[HEADLINE][~np.isnan(rates)].T
+    quartiles = np.quantile(found, [0.25, 0.5, 0.75]) if len(found) else ["", "", ""]
+    return {
+        "n": len(found), "zero": (found == 0).sum(), "below": (found < low).sum(), "within": ((low <= found) & (found <= high)).sum(),
+        "above": (found > high).sum(), "below_published": (found < published).sum(),
+        "interval_has_published": ((ends_low <= published) & (published <= ends_high)).sum(),
+        **dict(zip(["lower_quartile", "median", "upper_quartile"], quartiles)),
+    }
+
+
+def published_rate():
+    claims = tomllib.loads((ROOT / "reproduce" / "published.toml").read_text())["claim"]
+    return next(claim for claim in claims if claim["id"] == HEADLINE)
+
+
+def distribution_in_words(part):
+    own = distribution(part)
+    if not own["n"]:
         return ["No replication has a tree accuracy yet."]
-    below = (found < number).mean()
+    of_all = lambda name: percent(own[name] / own["n"])
     return [
-        f"Of the {len(found):,} replications with a tree accuracy, {percent((found < low).mean())} are below the accepted range",
-        f"({percent((found == 0).mean())} at 0), {percent(((found >= low) & (found <= high)).mean())} within it, and {percent((found > high).mean())} above. "
-        f"{percent(below)} are below the published {published['wording']}.",
-        f"The median is {percent(np.median(found))}, and the middle half lies between {percent(np.quantile(found, 0.25))} and {percent(np.quantile(found, 0.75))}.",
-        f"The intervals of {reach:,} contain the published number; with four simulations each, they are wide.",
+        f"Of the {own['n']:,} replications with a tree accuracy, {of_all('below')} are below the accepted range ({of_all('zero')} at 0), ",
+        f"{of_all('within')} within it, and {of_all('above')} above. {of_all('below_published')} are below the published "
+        f"{published_rate()['wording']}. The median is {percent(own['median'])}, and the middle half lies between "
+        f"{percent(own['lower_quartile'])} and {percent(own['upper_quartile'])}.",
+        f"The intervals of {own['interval_has_published']:,} contain the published number; with four simulations each, they are wide.",
     ]
 
 
