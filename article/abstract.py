@@ -28,7 +28,7 @@ def text():
         "The rate depends on choices that the paper does not state, above all on whether the fluid also pushes the body, as in our default.",
         "In a fluid that is only felt, a body with locked joints feels nothing but the drift of the engine;",
         "there, our default finds hardly any eligible sample at the published coordination.",
-        f"Of {of('universes')} small replications that take other reasonable choices, {of('universes-judged')} have an eligible sample,",
+        f"Of {of('universes')} small replications that take other reasonable choices, {of('universes-judged')} have an eligible sample there,",
         f"and {of('universes-hold')} of these come within ten points of the published rate.",
         "We list what the paper would have to state for these choices to close.",
     ]

@@ -259,6 +259,7 @@ def multiverse(published):
     value("universes-judged", thousands(headline["judged"]), source)
     value("universes-hold", thousands(headline["holds"]), source)
     value("universes-resolved", thousands(own("tree-accuracy", "resolved")["n"]), source)
+    value("resolved-judged", thousands(own("tree-accuracy", "resolved")["judged"]), source)
     value("resolved-share", share(own("tree-accuracy", "resolved")), source)
     names = {"tree": "tree-accuracy", "d": "dependence on d", "p": "dependence on p", "parts": "number-of-parts", "ari": "ari-over-coordination"}
     for name, claim in names.items():
@@ -276,10 +277,31 @@ def multiverse(published):
     source = f"{folder}/questions.csv"
     questions = table(source)
     answers = [name for name in questions[0] if name not in ("factor", "all") and not name.endswith(("_low", "_high"))]
-    value("answers", f"{', '.join(answers[:-1])} and {answers[-1]}", source)
+    all_answers = ["whether a tree can be judged", "the headline", "dependence on d", "dependence on p", "parts"]
+    missing = [ANSWERS[name] for name in all_answers if name not in answers]
+    value("answers", listed([ANSWERS[name] for name in answers]), source)
+    value("answers-missing", listed(missing), source)
+    flag("answers-all", not missing)
     for at, row in enumerate(questions[:3], 1):
-        value(f"question-{at}", row["factor"], source)
+        value(f"question-{at}", QUESTIONS.get(row["factor"], f"the {row['factor']}"), source)
         value(f"question-{at}-share", share(row, "all", "all_low", "all_high"), source)
+
+
+# What the tables call answers and settings, in the words of the article.
+ANSWERS = {
+    "whether a tree can be judged": "whether a tree can be judged", "the headline": "the published rate",
+    "dependence on d": "the dependence on d", "dependence on p": "the dependence on p", "parts": "the number of parts and their ARI",
+}
+QUESTIONS = {
+    "reading": "whether the equations or the authors' code made the figures", "start of a chain": "how a chain starts",
+    "sensor layout": "the layout of the sensors", "shape": "the shape of the body", "parts": "the size of the parts",
+    "fluid": "whether the fluid pushes back", "scaling": "the kind of scaling", "what is scaled": "what is scaled",
+    "targets of a joint's axes": "whether both axes of a joint share a target",
+}
+
+
+def listed(words):
+    return " and ".join(filter(None, [", ".join(words[:-1]), *words[-1:]]))
 
 
 def share(row, middle="share", low="low", high="high"):

@@ -6,7 +6,8 @@ It updates
 
 - docs/shown/: for each run and study its tables (large ones packed by gzip), its pictures, and its page as README.md; for confirm and
   the two experiments also their manifests;
-- README.md and docs/results.md: what lies between <!-- NAME --> and <!-- /NAME -->, from docs/shown. It needs no run;
+- README.md, docs/results.md, docs/own-data.md and docs/estimate.md: what lies between <!-- NAME --> and <!-- /NAME -->, from docs/shown.
+  It needs no run;
 - docs/settings.md: the table of open settings, from paper.toml, sensitivity.toml and docs/shown/searches.csv. It needs no run;
 - docs/shown/claims.md: the paper's sentences, claims and verdicts, from claims.toml and docs/shown. It needs no run;
 - article/values.toml: the numbers of the article, from docs/shown. It needs no run.
@@ -24,6 +25,7 @@ import subprocess
 import sys
 import tomllib
 
+import accuracy
 from estimated import flat
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
@@ -63,6 +65,8 @@ def main():
         except Skip as reason:
             skip(step, str(reason))
     answers()
+    for (page, name), lines in accuracy.tables().items():
+        between_marks(ROOT / page, name, "\n".join(lines))
     open_settings()
     for script in ["reproduce/claims.py", "article/values.py"]:
         if status := subprocess.run([sys.executable, ROOT / script]).returncode:
@@ -292,6 +296,8 @@ def momentum(results):
 
 def bodies(results):
     study(results / "bodies", ["recordings.csv", "edges.csv"], "bodies.md")
+    # For the seed and the revision.
+    copy([results / "bodies" / "manifest.json"], SHOWN / "bodies")
 
 
 def mixing(results):

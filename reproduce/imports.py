@@ -99,8 +99,12 @@ def own(file, depth=0):
     text = uncommented(file)
     if depth == 0 and not re.search(r"<mujoco[\s>]", text):
         return 0
-    bodies = re.sub(rf"<({NO_JOINTS})\b.*?</\1>", "", text, flags=re.S)
-    count = len(re.findall(r"<joint\b", bodies))
+    # The innermost first: defaults are nested.
+    inner = rf"<({NO_JOINTS})\b(?:(?!<\1\b).)*?</\1>"
+    bodies, found = text, 1
+    while found:
+        bodies, found = re.subn(inner, "", bodies, flags=re.S)
+    count = len(re.findall(r"<joint\b(?![^>]*\btype\s*=\s*[\"']free)", bodies))
     return count + (sum(own(included, depth + 1) for included in includes(file, text)) if depth < 8 else 0)
 
 
@@ -190,9 +194,10 @@ def mass_of_mjcf(file, root):
 
 def page(rows, design):
     usable = [row for row in rows if row["usable"] == "true"]
+    still = sum(row["joints_read"] == 0 for row in usable)
     weighed = [row for row in usable if row["mass_described_kg"]]
     off = [row for row in weighed if deviation(row) >= AGREES]
-    slow = [row for row in rows if float(row["seconds"]) > SECONDS]
+    slow = [row for row in rows if float(row["seconds"]) >= SECONDS]
     large = [row for row in rows if int(row["memory_mib"]) > MEMORY]
     lines = [
         "# Which robots are imported",
@@ -201,21 +206,27 @@ def page(rows, design):
         "[imports.toml](../../../reproduce/imports.toml) has the sources. Counted is every description with at least two movable joints; those",
         "with the same content count once, and a scene that includes a counted robot does not count. All: [imports.csv](imports.csv).",
         "",
-        "| collection | can be used | goal |",
-        "|---|---|---|",
+        "| collection | imported | with joints | goal |",
+        "|---|---|---|---|",
     ]
     for population in design["population"]:
         own = [row for row in rows if row["population"] == population["name"]]
-        count = sum(row["usable"] == "true" for row in own)
         goal = f"{100 * population['goal']:.0f} %" if "goal" in population else "–"
-        lines.append(f"| {population['name']} | {interval(count, len(own))} | {goal} |")
+        groups = {population["name"]: [[row] for row in own]}
         if population.get("folders"):
-            folders = {row["file"].split("/")[0]: False for row in own}
-            folders |= {row["file"].split("/")[0]: True for row in own if row["usable"] == "true"}
-            lines.append(f"| {population['name']}, robots with a description that can be used | {interval(sum(folders.values()), len(folders))} | {goal} |")
+            of = {}
+            for row in own:
+                of.setdefault(row["file"].split("/")[0], []).append(row)
+            groups[f"{population['name']}, by robot"] = list(of.values())
+        for name, robots_of in groups.items():
+            read = sum(any(row["usable"] == "true" for row in robot) for robot in robots_of)
+            joined = sum(any(row.get("joints_read", 0) > 0 for row in robot) for robot in robots_of)
+            lines.append(f"| {name} | {interval(read, len(robots_of))} | {interval(joined, len(robots_of))} | {goal} |")
     lines += [
         "",
-        "In brackets: 95 % intervals (Wilson). *Can be used* means that a body is written. What was changed for it is said in notes.",
+        paragraph("In brackets: 95 % intervals (Wilson). *Imported*: a body is written, and notes say what was changed for it. *With joints*: it has at "
+                  f"least one. {still} have none: all of theirs slide and are held, turn about the world, or lead to links without a shape. "
+                  "*By robot*: a robot counts if one of its descriptions does."),
         "",
         "## Masses",
         "",

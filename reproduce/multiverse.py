@@ -436,7 +436,7 @@ def answer(whole, own, questions):
     few = (whole.eligible[whole.judged[HEADLINE]] < FEW).sum()
     lines = [
         f"Of {headline['n']:,} reasonable replications, {headline['judged']:,} ({percent(headline['judged'] / headline['n'])}) can judge the",
-        f"published tree accuracy: the others find no sample with the right parts. It holds in {headline['holds']} of these, "
+        f"published tree accuracy: the others find no sample with the right parts at p = 0.9 and d = 14. It holds in {headline['holds']} of these, "
         f"**{with_ends(headline)}**: the rate lies between 74.6 and 94.6 %. {few} of the {headline['judged']:,} have fewer than {FEW} samples.",
         f"The dependence on d holds in **{with_ends(on_d)}** of the {on_d['judged']:,} that can judge it: no tree at d of 8 and below, and the tree",
         f"at each d from 9 on. The dependence on p holds in **{with_ends(on_p)}** of {on_p['judged']:,}: p = 0.9 is best, with at least half of",

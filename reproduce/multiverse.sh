@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # The multiverse that contains today's default: multiverse.toml, its surroundings (-near) and held-out movements (-held-out).
-# Takes some 12 core-hours, in shards of four movements. Stop it at any time, and run it again: what is finished is not run again, and
+# Takes some 15 core-hours, in shards of four movements. Stop it at any time, and run it again: what is finished is not run again, and
 # of the rest at most one movement for each thread is lost. The shards finished so far are at any time an even sample of the design.
 #
 #   reproduce/multiverse.sh            # runs what is left

@@ -9,14 +9,15 @@ reproduce/promising.sh runs. Needs Python 3.11 and the packages of python/requir
 import argparse
 import pathlib
 import sys
-import tomllib
 
 try:
+    import tomllib
+
     import numpy as np
-    from replications import OVERRIDDEN, Part, default, overrides
-    from surrogate import Chosen
+    from replications import Part, default, overrides, settings
+    from surrogate import OVERRIDDEN, Chosen
 except ModuleNotFoundError as missing:
-    sys.exit(f"promising: needs {missing.name}; run: pip install -r python/requirements.txt")
+    sys.exit(f"promising: needs Python 3.11 or newer; and {missing.name}: pip install -r python/requirements.txt")
 
 from estimated import ROOT, fail, flat
 
@@ -25,7 +26,7 @@ COUNT = 10
 # The climbs begin at this many random configurations, and at the best of those that ran.
 STARTS = 200
 BEST = 50
-# In so many choices, at least, one that is taken differs from all that were taken before.
+# In so many choices, at least, one that is taken differs from the default, and from all that were taken before.
 APART = 3
 
 
@@ -50,7 +51,8 @@ def main():
     predicted = chosen.surrogate.predict(looked_at)
     taken = []
     for at in np.argsort(-predicted, kind="stable"):
-        if len(taken) < COUNT and all((looked_at[at] != looked_at[other]).sum() >= APART for other in taken):
+        others = [space.usual, *(looked_at[other] for other in taken)]
+        if len(taken) < COUNT and all(differing(looked_at[at], other) >= APART for other in others):
             taken.append(at)
     text = design(space, [(looked_at[at], predicted[at]) for at in taken], chosen, len(values))
     arguments.out.write_text(text)
@@ -58,6 +60,11 @@ def main():
         truth = scores(held_out)
         left = ((truth - chosen.surrogate.predict(held_out.codes)) ** 2).sum() / ((truth - values.mean()) ** 2).sum()
         print(f"on {len(truth)} held-out replications the surrogate explains {100 * (1 - left):.0f} % of the variance of the score")
+
+
+def differing(codes, other):
+    """In how many choices two configurations differ; what another choice overrides is none."""
+    return ((codes != other) & (codes != OVERRIDDEN) & (other != OVERRIDDEN)).sum()
 
 
 def scores(part):
@@ -122,13 +129,6 @@ class Space:
                 return np.concatenate(looked_at)
             codes, reached = changed[best], predicted[best]
 
-    def settings(self, codes):
-        found = {}
-        for factor, code in zip(self.factors, codes):
-            if code != OVERRIDDEN:
-                found |= dict(flat(factor["option"][code].get("settings", {})))
-        return found
-
     def differs(self, codes):
         """The choices that differ from the default's, in words."""
         return [f"{factor['name']} = {factor['option'][code]['label']}"
@@ -143,7 +143,7 @@ def design(space, taken, chosen, fitted):
         'about = """',
         "Does any configuration reproduce all scored claims? These are the ten that a surrogate of the multiverse's score holds for the best, with",
         f"today's default first. The surrogate is fitted to {fitted} replications, and explains {100 * (1 - chosen.error):.0f} % of the variance",
-        f"of the score in movements that it has not seen. Any two of the ten differ in at least {APART} choices. What a surrogate promises for",
+        f"of the score in movements that it has not seen. Each differs from the default and from the others in at least {APART} choices. What a surrogate promises for",
         'the best of many is too good: these runs, on a seed that nothing else used, are the answer."""',
         "# Nothing was chosen by it.",
         "seed = 6730000",
@@ -151,6 +151,7 @@ def design(space, taken, chosen, fitted):
         "",
         "[settings]",
         "schema = { chains = 6 }",
+        "map = { starts = 2 }",
         "experiment = { simulations = 60, dimensions = [2, 5, 8, 9, 10, 14, 15], coordinations = [0.0, 0.4, 0.8, 0.95] }",
         "",
         "[[configuration]]",
@@ -163,7 +164,7 @@ def design(space, taken, chosen, fitted):
             f"# Predicted score: {predicted:.2f}. Other than the default: {'; '.join(space.differs(codes))}.",
             "[[configuration]]",
             f'name = "candidate {at}"',
-            f"settings = {{ {inline(space.settings(codes))} }}",
+            f"settings = {{ {inline(settings(space.factors, codes))} }}",
         ]
     return "\n".join(lines) + "\n"
 

@@ -19,7 +19,7 @@ except ModuleNotFoundError:
 
 from estimated import ROOT, TRUTH, downloaded, estimated, run, write
 
-COLUMNS = ["recording", "use", "samples", "sensors", "fit", *TRUTH]
+COLUMNS = ["recording", "use", "samples", "sensors", "fit", *TRUTH, "revision"]
 
 
 def main():
@@ -48,7 +48,7 @@ def measured(file, folder, design):
     run("simulate", "--body", body, "--movement", file, "--seed", seed, "--out", felt)
     summary, truth = estimated(felt, folder / "found", seed)
     sensors = summary["sensors"] - summary["dropped"]
-    return {"samples": summary["samples"], "sensors": sensors, "fit": summary["fit"], **truth}
+    return {"samples": summary["samples"], "sensors": sensors, "fit": summary["fit"], **truth, "revision": summary["revision"]}
 
 
 def page(rows, design):
@@ -56,7 +56,8 @@ def page(rows, design):
     lines = [
         "# Recorded movements",
         "",
-        "Made by `reproduce/recordings.py`. Each movement was recorded by others; the skin is virtual, without noise. Bones of at least",
+        f"Made by `reproduce/recordings.py` with revision {rows[0]['revision'][:7]}.",
+        "Each movement was recorded by others; the skin is virtual, without noise. Bones of at least",
         f"{design['min_length']} m carry 40 sensors each. [recordings.toml](../../../reproduce/recordings.toml) has the sources, and says",
         "what each recording was used for. A joint is right if it joins parts that turn about one place, and a tree if its parts",
         "and joints are. The lowest adjusted Rand index comes first.",

@@ -1,6 +1,7 @@
 """The replications of a multiverse, as `reproduce/multiverse.sh gather` writes them: multiverse.py and promising.py read them."""
 
 import copy
+import math
 import tomllib
 
 import numpy as np
@@ -39,9 +40,6 @@ class Part:
         if not (folder / "design.toml").is_file():
             return
         self.design = tomllib.loads((folder / "design.toml").read_text())
-        if "extends" in self.design:
-            base = tomllib.loads((ROOT / "reproduce" / self.design["extends"]).read_text())
-            self.design = {**base, **self.design}
         self.factors = [factor["name"] for factor in self.design["factor"]]
         self.labels = [[option["label"] for option in factor["option"]] for factor in self.design["factor"]]
         self.rows = read(folder / "configurations.csv")
@@ -116,3 +114,23 @@ def overrides(part):
     keys = [[set(key for key, _ in flat(option.get("settings", {}))) for option in factor["option"]] for factor in factors]
     return [[[other for other in range(at) if keys[other][0] and keys[other][0] <= own] for own in options]
             for at, options in enumerate(keys)]
+
+
+def settings(factors, codes):
+    """What a configuration has instead of the default's values, by dotted names: those of its options, later ones over earlier ones, and the
+    stiffness and damping of a torque, whose option says what it does to a part (src/study/choices.rs)."""
+    found, gains = {}, None
+    for factor, code in zip(factors, codes):
+        if code != OVERRIDDEN:
+            option = factor["option"][code]
+            found |= dict(flat(option.get("settings", {})))
+            gains = option.get("gains", gains)
+    if gains:
+        paper = dict(flat(tomllib.loads((ROOT / "reproduce" / "paper.toml").read_text())))
+        density, radius, length, step = (
+            (paper | found)[key] for key in ["agent.density", "agent.part_radius", "agent.part_length", "physics.step"])
+        mass = density * math.pi * radius**2 * length
+        stiffness = gains["frequency"] ** 2 * mass * length**2 / 3
+        damping = gains["spin_damping"] * mass * radius**2 / 2 / step
+        found |= {"motion.controller": "torque", "motion.stiffness": float(f"{stiffness:.2e}"), "motion.damping": float(f"{damping:.2e}")}
+    return found

@@ -7,14 +7,15 @@ import pytest
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "reproduce"))
 
-imports = pytest.importorskip("imports")
+import imports  # noqa: E402
 
 
 def test_robots_have_two_joints_and_scenes_do_not_count_twice(tmp_path):
     leg = '<body><joint/><geom size="1"/>'
     for name, text in {
         "legs.xml": f"<mujoco><worldbody>{leg}{leg}</body></body></worldbody></mujoco>",
-        "leg.xml": f"<mujoco><default><joint/><joint/></default><worldbody>{leg}</body></worldbody></mujoco>",
+        "leg.xml": f"<mujoco><default><default><joint/></default><joint/><joint/></default><worldbody>{leg}</body></worldbody></mujoco>",
+        "free.xml": f'<mujoco><worldbody><body><joint type="free"/>{leg}</body></body></worldbody></mujoco>',
         "scene.xml": '<mujoco><include file="legs.xml"/><worldbody/></mujoco>',
         "part.xml": f"<mujocoinclude>{leg}{leg}</body></body></mujocoinclude>",
         "whole.xml": '<mujoco><worldbody><include file="part.xml"/></worldbody></mujoco>',

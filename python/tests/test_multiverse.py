@@ -21,6 +21,7 @@ sys.path.insert(0, str(ROOT / "reproduce"))
 
 import multiverse  # noqa: E402
 import promising  # noqa: E402
+import replications  # noqa: E402
 import surrogate  # noqa: E402
 
 
@@ -110,7 +111,7 @@ def test_the_authors_code_overrides_the_prior(part):
     assert len(rows) and (rows[:, code] == surrogate.OVERRIDDEN).all()
 
 
-def test_the_score_of_a_replication_is_that_of_a_study(part):
+def test_the_score_of_a_replication_is_the_mean_of_its_credits(part):
     """By hand, of the first replication that can judge the headline."""
     at = int(np.flatnonzero(part.judged["tree-accuracy"])[0])
     claims = tomllib.loads((ROOT / "reproduce/scored.toml").read_text())["claim"]
@@ -122,6 +123,23 @@ def test_the_score_of_a_replication_is_that_of_a_study(part):
     found = promising.scores(part)
     assert found[at] == pytest.approx(sum(credits) / sum(claim["weight"] for claim in claims))
     assert found[np.isnan(part.values["number-of-parts"])].sum() == 0 and 0 <= found.min() < found.max() <= 1
+
+
+def test_settings_are_those_that_ran(part):
+    """Also stiffness and damping of a torque, and what a reading overrides."""
+    torques = 0
+    for row, codes in zip(part.rows, part.codes):
+        # What every replication has, in addition to its options.
+        usual = dict(replications.flat(part.design["settings"]))
+        found = usual | replications.settings(part.design["factor"], codes)
+        ran = dict(one.split(" = ", 1) for one in re.split(r", (?=[a-z]+\.[a-z_]+ = )", row["settings"]))
+        written = {key: str(value).lower() if isinstance(value, bool) else str(value) for key, value in found.items()}
+        for key in written.keys() & ran.keys():
+            same = written[key] == ran[key] or float(written[key]) == pytest.approx(float(ran[key]), rel=1e-12)
+            assert same, f"{key}: {written[key]}, not {ran[key]}"
+        assert set(ran) <= set(written), set(ran) - set(written)
+        torques += ran.get("motion.controller") == "torque"
+    assert torques > 0
 
 
 def test_a_climb_ends_where_no_change_of_a_choice_predicts_more(part):

@@ -333,7 +333,7 @@ impl<'a> Bodies<'a> {
         let mass = inertial.map_or(mass, |inertial| inertial.mass);
         let inertia_box = inertial.and_then(|own| Solid::of_inertia(own.mass, own.tensor, own.pose));
         let label = ["body", &self.links[body].name];
-        Ok(settled(label, solids, mass, missing.as_deref(), inertia_box, &mut self.notes))
+        settled(label, solids, mass, missing.as_deref(), inertia_box, self.strict, &mut self.notes)
     }
 }
 

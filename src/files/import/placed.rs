@@ -113,22 +113,26 @@ pub(super) fn weigh(solids: &mut [Solid], mass: f64) {
 /// What a link of this name consists of: these shapes, or the box of its inertia if meshes are missing and nothing is left; all with
 /// the mass, kg, of the link, and without what only marks a place. Also the mass if it has no shape, 0 otherwise. Messages call a
 /// link `word`.
+///
+/// # Errors
+/// If it is `strict`, and a shape is thinner than a part may be.
 pub(super) fn settled(
     [word, name]: [&str; 2],
     mut solids: Vec<Solid>,
     mass: f64,
     missing: Option<&str>,
     inertia_box: Option<Solid>,
+    strict: bool,
     notes: &mut Vec<String>,
-) -> (Vec<Solid>, f64) {
+) -> Result<(Vec<Solid>, f64), Wrong> {
     if let Some(missing) = missing {
         // A small shape beside a mesh that is missing, such as a logo, does not stand for the link.
         let others = mass < DENSEST * solids.iter().map(Solid::bulk).sum::<f64>();
         let stand_in = inertia_box.filter(|_| !others);
-        let what = match (others, &stand_in) {
-            (true, _) => "its other shapes stand for it",
-            (_, Some(_)) => "a box with its inertia stands for it",
-            _ => "it has no shape",
+        let what = match &stand_in {
+            Some(_) => "a box with its inertia stands for it",
+            None if solids.is_empty() => "it has no shape",
+            None => "its other shapes stand for it",
         };
         notes.push(format!("{word} `{name}`: {missing}; {what}"));
         solids.extend(stand_in);
@@ -152,11 +156,14 @@ pub(super) fn settled(
     }
     if thin > 0 {
         let all = solids.len();
-        notes
-            .push(format!("{word} `{name}`: {thin} of {all} shapes are thinner than 1 mm and made so thick"));
+        let what = format!("{word} `{name}`: {thin} of {all} shapes have a length or radius below 1 mm");
+        if strict {
+            return Err(format!("{what}; make it larger"));
+        }
+        notes.push(format!("{what}, which became 1 mm"));
     }
     let bare_mass = if solids.is_empty() { mass } else { 0.0 };
-    (solids, bare_mass)
+    Ok((solids, bare_mass))
 }
 
 /// A shape that is nowhere thinner than a part may be.
@@ -168,7 +175,8 @@ fn thickened(shape: Shape) -> Shape {
             Shape::Cylinder { radius: thick(radius), length: thick(length) }
         }
         Shape::Capsule { radius, length } => Shape::Capsule { radius: thick(radius), length: thick(length) },
-        Shape::Sphere { radius } => Shape::Sphere { radius: thick(radius) },
+        // A smaller ball is a mark, and gone before.
+        Shape::Sphere { radius } => Shape::Sphere { radius },
         Shape::Box { sides } => Shape::Box { sides: sides.map(thick) },
     }
 }
@@ -261,11 +269,13 @@ impl Solid {
     }
 
     /// The surface of the mesh that it stands for, in the frame of its shape, in as few triangles as a picture needs.
+    /// None if the mesh is so slender that nothing is left of it: then the shape is drawn.
     pub(super) fn surface(&self) -> Option<Vec<[Vector3; 3]>> {
         let (mesh, pose) = self.mesh.as_ref()?;
         let within = self.pose.inverse() * pose;
         let corner = |corner: Column<f64>| (within * Point3::from(corner)).coords.into();
-        Some(mesh.simplified().into_iter().map(|corners| corners.map(corner)).collect())
+        let triangles: Vec<_> = mesh.simplified().into_iter().map(|corners| corners.map(corner)).collect();
+        Some(triangles).filter(|triangles| !triangles.is_empty())
     }
 
     /// The solid as a part that is not joined yet, with this skin if it is a mesh.

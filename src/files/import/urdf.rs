@@ -3,7 +3,7 @@
 use std::collections::{HashMap, HashSet};
 use std::rc::Rc;
 
-use nalgebra::{Isometry3, Matrix3, Translation3, UnitQuaternion, Vector3};
+use nalgebra::{Isometry3, Matrix3, Quaternion, Translation3, UnitQuaternion, Vector3};
 use roxmltree::Node;
 
 use super::document::Wrong;
@@ -15,6 +15,9 @@ use super::notes::{absent, names};
 use super::placed::{Link, Read, Solid, Turn, settled};
 use super::xml::Element;
 use crate::stages::agent::Shape;
+
+/// The link that needs no element.
+const WORLD: &str = "world";
 
 /// A joint by the places of its links among all links.
 struct Joint<'a> {
@@ -37,17 +40,20 @@ pub(super) fn links<'a>(root: Node<'a, 'a>, files: &Located, strict: bool) -> Re
         }
         nodes.push((name, node));
     }
+    let is_joint = |node: &Node| node.has_tag_name("joint");
+    // Some readers know the world without a link for it.
+    let on_world =
+        |joint: Node<'a, 'a>| child(joint, "parent").filter(|end| end.attribute("link") == Some(WORLD));
+    if let Some(world) = root.children().filter(is_joint).find_map(on_world)
+        && !places.contains_key(WORLD)
+    {
+        places.insert(WORLD, nodes.len());
+        nodes.push((WORLD, world));
+    }
     let mut joints = Vec::new();
-    for node in root.children().filter(|node| node.has_tag_name("joint")) {
+    for node in root.children().filter(is_joint) {
         let name = Element::new("joint", node).needed("name")?;
         let element = labelled("joint", name, node);
-        // Some readers know the world without a link for it.
-        if !places.contains_key("world")
-            && child(node, "parent").and_then(|end| end.attribute("link")) == Some("world")
-        {
-            notes.push(format!("joint `{name}` is with the world, which is no link, and left out"));
-            continue;
-        }
         let end = |tag: &'static str| {
             let end = child(node, tag).ok_or_else(|| element.wrong(format!("lacks <{tag}>; add it")))?;
             let link = element.part(end).needed("link")?;
@@ -76,7 +82,7 @@ pub(super) fn links<'a>(root: Node<'a, 'a>, files: &Located, strict: bool) -> Re
             parent = Some(below);
             turns.extend(turn(joint, &frame)?);
         }
-        let (solids, bare_mass, named) = Reader { name, node, frame, files }.solids(&mut notes)?;
+        let (solids, bare_mass, named) = Reader { name, node, frame, files, strict }.solids(&mut notes)?;
         let origin = frame.translation.vector;
         links.push(Link { name: name.to_owned(), parent, origin, turns, solids, bare_mass, named });
         frames.push(frame);
@@ -85,21 +91,27 @@ pub(super) fn links<'a>(root: Node<'a, 'a>, files: &Located, strict: bool) -> Re
 }
 
 /// Elements by which xacro builds a robot. Others call a macro, which a file without any macros no longer has.
-const BUILDS: [&str; 8] = ["macro", "include", "property", "arg", "if", "unless", "insert_block", "call"];
+const BUILDS: [&str; 10] =
+    ["macro", "include", "property", "arg", "if", "unless", "insert_block", "call", "element", "attribute"];
 
 /// A note on what is left of macros in a file that xacro has expanded.
 ///
 /// # Errors
 /// If xacro still has to expand it, or if it is `strict`.
 fn not_expanded(root: Node, strict: bool) -> Result<Option<String>, Wrong> {
-    let is_xacro = |node: &Node| node.tag_name().namespace().is_some_and(|space| space.contains("xacro"));
-    let left: Vec<Node> = root.descendants().filter(is_xacro).collect();
-    let builds = left.iter().find(|node| strict || BUILDS.contains(&node.tag_name().name()));
-    if let Some(node) = builds {
-        let wrong = Element::new(node.tag_name().name(), *node);
+    // Without a namespace where the file does not declare its prefix.
+    let own_name = |node: Node<'_, '_>| {
+        let tag = node.tag_name();
+        let is_of_xacro = tag.namespace().is_some_and(|space| space.contains("xacro"));
+        tag.name().strip_prefix("xacro.").or(is_of_xacro.then_some(tag.name())).map(str::to_owned)
+    };
+    let left: Vec<(String, Node)> =
+        root.descendants().filter_map(|node| own_name(node).map(|name| (name, node))).collect();
+    if let Some((name, node)) = left.iter().find(|(name, _)| strict || BUILDS.contains(&&**name)) {
+        let wrong = Element::new(name, *node);
         return Err(wrong.wrong("is an element of xacro; expand the file first: xacro FILE > robot.urdf"));
     }
-    let names = names(left.iter().map(|node| node.tag_name().name()));
+    let names = names(left.iter().map(|(name, _)| &**name));
     Ok(names.map(|names| format!("macros of xacro that were not expanded are left out {names}")))
 }
 
@@ -149,8 +161,14 @@ fn origin(element: &Element, node: Node) -> Result<Isometry3<f64>, Wrong> {
     let Some(origin) = child(node, "origin") else { return Ok(Isometry3::identity()) };
     let origin = element.part(origin);
     let place = Vector3::from(origin.numbers("xyz")?.unwrap_or_default());
-    let [roll, pitch, yaw] = origin.numbers("rpy")?.unwrap_or_default();
-    let turn = UnitQuaternion::from_euler_angles(roll, pitch, yaw);
+    let turn = match origin.numbers::<4>("quat_xyzw")? {
+        Some([x, y, z, w]) => UnitQuaternion::try_new(Quaternion::new(w, x, y, z), 1e-9)
+            .ok_or_else(|| origin.wrong("has quat_xyzw of length 0; give it a rotation"))?,
+        None => {
+            let [roll, pitch, yaw] = origin.numbers("rpy")?.unwrap_or_default();
+            UnitQuaternion::from_euler_angles(roll, pitch, yaw)
+        }
+    };
     Ok(Isometry3::from_parts(Translation3::from(place), turn))
 }
 
@@ -187,6 +205,7 @@ struct Reader<'a, 'f> {
     node: Node<'a, 'a>,
     frame: Isometry3<f64>,
     files: &'f Located,
+    strict: bool,
 }
 
 impl<'a> Reader<'a, '_> {
@@ -220,7 +239,8 @@ impl<'a> Reader<'a, '_> {
         let named = inertia.as_ref().and_then(|(tensor, pose)| Mass::new(mass, *tensor, pose));
         let inertia_box = inertia.and_then(|(tensor, pose)| Solid::of_inertia(mass, tensor, pose));
         let label = ["link", self.name];
-        let (solids, bare_mass) = settled(label, solids, mass, missing.as_deref(), inertia_box, notes);
+        let (solids, bare_mass) =
+            settled(label, solids, mass, missing.as_deref(), inertia_box, self.strict, notes)?;
         Ok((solids, bare_mass, named))
     }
 

@@ -44,7 +44,7 @@ fn mark_binary(bytes: &mut [u8]) {
     let Some((header, rest)) = bytes.split_first_chunk_mut::<80>() else { return };
     let Some((count, triangles)) = rest.split_first_chunk::<4>() else { return };
     if triangles.len() as u64 == 50 * u64::from(u32::from_le_bytes(*count)) {
-        header[0] = b' ';
+        header.fill(0);
     }
 }
 

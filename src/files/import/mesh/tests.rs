@@ -94,7 +94,7 @@ fn written(folder: &Path) -> Vec<std::path::PathBuf> {
         face.iter().for_each(|at| binary.extend(floats(&corners[*at])));
         binary.extend([0, 0]);
     }
-    let called_text = [b"solid t", &binary[7..]].concat();
+    let called_text = [b"solid t\n", &binary[8..]].concat();
     let mut msh: Vec<u8> = [4_u32, 0, 0, 4].iter().flat_map(|count| count.to_le_bytes()).collect();
     msh.extend(floats(&corners.concat()));
     msh.extend(faces.concat().iter().flat_map(|at| (*at as u32).to_le_bytes()));

@@ -161,7 +161,7 @@ fn the_limits_are_those_of_the_format() {
     let refused = |geom: &str| imported(&body(geom), SKIN).unwrap_err();
     let thin = imported(&body("type='cylinder' size='0.0009 1' mass='0.1'"), SKIN).unwrap();
     assert_eq!(thin.file.parts[0].radius, Some(0.001));
-    assert_eq!(thin.notes, ["body `a`: 1 of 1 shapes are thinner than 1 mm and made so thick"]);
+    assert_eq!(thin.notes, ["body `a`: 1 of 1 shapes have a length or radius below 1 mm, which became 1 mm"]);
     assert_eq!(refused("size='-1' mass='1'"), "part `a`: radius is -1, but must be 0.001 to 1000 (m)");
     assert!(refused("size='2000'").contains("radius is 2000"));
     assert!(refused("size='1' pos='0 0 5000'").contains("centre is [0.0, 0.0, 5000.0]"));

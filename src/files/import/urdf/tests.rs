@@ -189,20 +189,47 @@ fn what_only_marks_a_place_is_left_out() {
 }
 
 #[test]
-fn what_is_left_of_macros_and_the_world_are_left_out_with_a_note() {
+fn calls_of_macros_that_are_gone_are_left_out_with_a_note() {
     let text = links_of("a b")
-        + &joint("fixed", "world", "a", "")
         + &joint("revolute", "a", "b", "")
         + "<x:camera xmlns:x='http://www.ros.org/wiki/xacro'/>";
     let found = read_in(Path::new(""), &text).unwrap();
-    assert_eq!(found.links.len(), 2);
-    let expected = [
-        "macros of xacro that were not expanded are left out (1): camera",
-        "joint `world-a` is with the world, which is no link, and left out",
-    ];
-    assert_eq!(found.notes, expected);
-    let world = read_in(Path::new(""), &(text + "<link name='world'/>")).unwrap();
-    assert_eq!((world.links.len(), world.notes.len()), (3, 1), "a link of that name is one");
+    assert_eq!(found.notes, ["macros of xacro that were not expanded are left out (1): camera"]);
+    // As `text` writes a prefix that is not declared.
+    let undeclared = links_of("a") + "<xacro.camera/>";
+    assert_eq!(read_in(Path::new(""), &undeclared).unwrap().notes, found.notes);
+    for builds in ["<xacro.if value='1'><link name='b'/></xacro.if>", "<xacro.element name='link'/>"] {
+        assert!(read(&(links_of("a") + builds)).unwrap_err().contains("is an element of xacro"), "{builds}");
+    }
+}
+
+#[test]
+fn the_world_needs_no_link_to_carry_others() {
+    let arms = joint("fixed", "world", "a", "<origin xyz='1 0 0'/>") + &joint("fixed", "world", "b", "");
+    let implied = read_in(Path::new(""), &(links_of("a b") + &arms)).unwrap();
+    let declared = read_in(Path::new(""), &(links_of("a b world") + &arms)).unwrap();
+    assert!(implied.notes.is_empty());
+    let tree = |read: &Read| {
+        read.links.iter().map(|link| (link.name.clone(), link.parent, link.origin)).collect::<Vec<_>>()
+    };
+    assert_eq!(tree(&implied), tree(&declared));
+    assert_eq!(implied.links[1].parent, Some(0), "{:?}", tree(&implied));
+    let misspelt = links_of("a") + &joint("fixed", "world", "b", "");
+    assert!(read(&misspelt).unwrap_err().contains("has child `b`, which is not a link"));
+}
+
+#[test]
+fn an_origin_may_have_a_quaternion() {
+    let at = |turn: &str| {
+        let ball = format!(
+            "<link name='a'><visual><origin {turn}/><geometry><box size='1 2 3'/></geometry></visual></link>"
+        );
+        read(&ball).map(|links| links[0].solids[0].pose.rotation)
+    };
+    let half = std::f64::consts::FRAC_1_SQRT_2;
+    let quaternion = at(&format!("quat_xyzw='{half} 0 0 {half}'")).unwrap();
+    assert!(quaternion.angle_to(&at("rpy='1.5707963267948966 0 0'").unwrap()) < 1e-9);
+    assert!(at("quat_xyzw='0 0 0 0'").unwrap_err().contains("has quat_xyzw of length 0"));
 }
 
 #[test]
@@ -225,6 +252,10 @@ fn a_small_shape_beside_a_mesh_that_is_missing_does_not_stand_for_the_link() {
     assert!(count == 1 && said.contains("its other shapes stand for it"), "{said}");
     let (count, said) = note("0.01", "10");
     assert!(count == 2 && said.contains("a box with its inertia stands for it"), "{said}");
+    // Without an inertia the small one is all that there is.
+    let bare = link("0.01", "10").replace("<inertia ixx='0.1' iyy='0.1' izz='0.1'/>", "");
+    let Read { links, notes } = read_in(Path::new(""), &bare).unwrap();
+    assert!(links[0].solids.len() == 1 && notes[0].contains("its other shapes stand for it"), "{notes:?}");
 }
 
 #[test]
@@ -234,7 +265,7 @@ fn what_is_thinner_than_a_part_may_be_becomes_thicker_and_keeps_its_mass() {
     let [solid] = &links[0].solids[..] else { panic!() };
     assert_eq!(solid.shape, Shape::Cylinder { radius: 0.1, length: 0.001 });
     assert!((solid.own_mass() - 1000.0 * std::f64::consts::PI * 0.01 * 0.0001).abs() < 1e-12);
-    assert_eq!(notes, ["link `a`: 1 of 1 shapes are thinner than 1 mm and made so thick"]);
+    assert_eq!(notes, ["link `a`: 1 of 1 shapes have a length or radius below 1 mm, which became 1 mm"]);
 }
 
 #[test]

@@ -1,0 +1,143 @@
+"""How often `estimate` is right, as README.md, docs/own-data.md and docs/estimate.md show it: tables from docs/shown/bodies and
+docs/shown/recordings. Used by docs.py."""
+
+import json
+import sys
+
+from estimated import ROOT, interval, read, wilson
+
+SHOWN = ROOT / "docs" / "shown"
+# s: one sample, and how long a joint has one target or is locked (bodies.toml).
+INTERVAL, EPOCH = 0.1, 5.0
+# Bootstrap support, in percent, from one to below the other.
+BINS = {"50 to 80 %": (0.5, 0.8), "95 to 99 %": (0.95, 0.99), "100 %": (1.0, 2.0)}
+
+
+def tables():
+    """By file and name of its marks: the text between them."""
+    return {**of_bodies(), **of_recordings()}
+
+
+def of_bodies():
+    recordings = read(SHOWN / "bodies" / "recordings.csv")
+    edges = read(SHOWN / "bodies" / "edges.csv")
+    manifest = SHOWN / "bodies" / "manifest.json"
+    if not manifest.is_file():
+        print("docs.py: the accuracy of `estimate` is skipped: docs/shown/bodies has no manifest; run reproduce/bodies.sh", file=sys.stderr)
+        return {}
+    facts = json.loads(manifest.read_text())
+    source = f"Seed {facts['seed']}, revision {facts['revision'][:7]}; `reproduce/bodies.sh`."
+    return {
+        ("README.md", "accuracy"): [*shortest(recordings), "", f"[Held out](docs/estimate.md#accuracy): {source[0].lower()}{source[1:]}"],
+        ("docs/own-data.md", "lengths"): [*by_length(recordings), "", source],
+        ("docs/own-data.md", "certain"): certain(recordings, edges),
+        ("docs/estimate.md", "accuracy"): [*pooled(recordings), "", source],
+        ("docs/estimate.md", "support"): support(recordings, edges),
+    }
+
+
+def of_recordings():
+    moved = read(SHOWN / "recordings" / "recordings.csv")
+    held_out = [row for row in moved if row["use"] == "held out"]
+    right = sum(row["tree_right"] == "true" for row in held_out)
+    found = f"Of {len(held_out)} held-out [recorded movements](docs/own-data.md#recorded-movements), {right} trees were right."
+    source = f"Revision {moved[0]['revision'][:7]}; `reproduce/recordings.py`."
+    return {("README.md", "recorded"): [found], ("docs/own-data.md", "recorded"): [*recorded(moved, held_out), "", source]}
+
+
+def shortest(recordings):
+    rows = [("100,000 samples", 100_000, 0.0), ("10,000 samples", 10_000, 0.0), ("1,000 samples", 1_000, 0.0),
+            ("100,000 samples, noise of a tenth", 100_000, 0.1)]
+    lines = ["| simulated random movement, 15 bodies | trees right, p = 0.5 | 95 % interval | n |", "|---|---|---|---|"]
+    for name, samples, noise in rows:
+        own = [row for row in of(recordings, samples, noise) if float(row["coordination"]) == 0.5]
+        share, low, high = ends(own, "tree_right")
+        lines.append(f"| {name} | {share} % | {low} to {high} % | {len(own)} |")
+    return lines
+
+
+def by_length(recordings):
+    lines = ["| T (time) | p | targets | noise | parts right | tree right | tree right, true parts given |", "|---|---|---|---|---|---|---|"]
+    for samples, noise in kinds(recordings):
+        for p in sorted({float(row["coordination"]) for row in recordings}):
+            own = [row for row in of(recordings, samples, noise) if float(row["coordination"]) == p]
+            seconds = samples * INTERVAL
+            targets = round(seconds / EPOCH * (1 - p))
+            cells = [f"{samples:,} ({seconds:,.0f} s)", f"{p:g}", f"{targets:,}", f"{noise:g}", *rates(own)]
+            lines.append(f"| {' | '.join(cells)} |")
+    return lines
+
+
+def pooled(recordings):
+    lines = ["| T | noise | n | parts right | tree right | tree right, true parts given |", "|---|---|---|---|---|---|"]
+    for samples, noise in kinds(recordings):
+        own = of(recordings, samples, noise)
+        lines.append(f"| {' | '.join([f'{samples:,}', f'{noise:g}', str(len(own)), *rates(own)])} |")
+    return lines
+
+
+def support(recordings, edges):
+    """How often edges are right, by their bootstrap support, the noise, and whether the parts are right."""
+    groups = [(noise, right) for noise in (0.0, 0.1) for right in (True, False)]
+    names = [f"{'noise 0.1' if noise else 'no noise'}, {'right' if right else 'wrong'} parts" for noise, right in groups]
+    lines = [f"| support | {' | '.join(names)} |", f"|---|{'---|' * len(groups)}"]
+    for name, ends in BINS.items():
+        cells = [supported(recordings, edges, ends, *group) for group in groups]
+        lines.append(f"| {name} | {' | '.join(cells)} |")
+    return lines
+
+
+def certain(recordings, edges):
+    """The same of edges with a support of 100 %."""
+    lines = ["| | right parts | wrong parts |", "|---|---|---|"]
+    for name, noise in [("no noise", 0.0), ("noise of a tenth", 0.1)]:
+        cells = [supported(recordings, edges, BINS["100 %"], noise, right) for right in (True, False)]
+        lines.append(f"| {name} | {' | '.join(cells)} |")
+    return lines
+
+
+def supported(recordings, edges, ends, noise, parts_right):
+    """How often edges with a support in this range are right."""
+    key = lambda row: tuple(row[name] for name in ["body", "coordination", "movement", "samples", "noise"])
+    wanted = {key(row) for row in recordings if (row["parts_right"] == "true") == parts_right}
+    own = [row for row in edges
+           if float(row["noise"]) == noise and key(row) in wanted and ends[0] <= float(row["confidence"]) < ends[1]]
+    return rate(own, "right", f"; n = {len(own):,}") if own else "–"
+
+
+def recorded(moved, held_out):
+    """What came out of recorded movements, in words."""
+    mean = lambda rows: f"{sum(float(row['ari']) for row in rows) / len(rows):.2f}"
+    right = lambda rows: interval(sum(row["tree_right"] == "true" for row in rows), len(rows))
+    long = [row for row in moved if int(row["samples"]) >= 1000]
+    short = [row for row in moved if int(row["samples"]) < 1000]
+    return [
+        f"- **Parts**: the mean adjusted Rand index is {mean(moved)} (n = {len(moved)}). In the {len(held_out)} that were held out it is "
+        f"{mean(held_out)}.",
+        f"- **Trees** were right in {right(moved)}, and in {right(held_out)} that were held out.",
+        f"- **Long recordings work**: of those with at least 1,000 samples, {right(long)} trees are right, and of shorter ones {right(short)}.",
+    ]
+
+
+def kinds(recordings):
+    return sorted({(int(row["samples"]), float(row["noise"])) for row in recordings}, key=lambda kind: (kind[1], kind[0]))
+
+
+def of(recordings, samples, noise):
+    return [row for row in recordings if int(row["samples"]) == samples and float(row["noise"]) == noise]
+
+
+def rates(rows):
+    return [rate(rows, column) for column in ("parts_right", "tree_right", "tree_of_true_parts_right")]
+
+
+def rate(rows, column, more=""):
+    share, low, high = ends(rows, column)
+    return f"{share} % ({low} to {high}{more})"
+
+
+def ends(rows, column):
+    """A share with its 95 % interval (Wilson), in percent, as text."""
+    count = sum(row[column] == "true" for row in rows)
+    shares = [count / len(rows), *(min(1.0, max(0.0, end)) for end in wilson(count, len(rows)))]
+    return [{"0.0": "0", "100.0": "100"}.get(text, text) for text in (f"{100 * share:.1f}" for share in shares)]
