@@ -291,6 +291,7 @@ def page(rows, design):
         f"method fails, and touch cannot tell the truth, either. In {faults['touch']}, only touch cannot."
         + (f" {faults['?']} were not looked into." if faults["?"] else ""),
         f"In {only} of the {len(wrong)}, all joints are right, and the only fault is that there are too many parts.",
+        f"Reasons and faults were looked into at revision {design['looked_into']}.",
         "",
         "A sensor is *astray* if it is not on the found part that stands for its true part. It may feel nothing of a hinge: its normal is along",
         "the axis, or meets it. Then it *feels the same* on the next part, and touch cannot tell where it belongs. A tree can be right all",

@@ -13,6 +13,7 @@
 mod als;
 mod cluster;
 mod completion;
+mod dispersal;
 mod faces;
 mod factorisation;
 #[cfg(test)]
@@ -32,6 +33,8 @@ mod search;
 mod separation;
 mod stratified;
 mod subspace;
+#[cfg(test)]
+mod testing;
 mod weights;
 
 pub(crate) use self::als::Als;

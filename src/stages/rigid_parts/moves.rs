@@ -119,7 +119,8 @@ impl Search {
         self.learned([core.as_slice(), group].concat())
     }
 
-    fn learned(&self, sensors: Vec<usize>) -> Cluster {
+    /// A cluster of sensors, whose motion is learned in more iterations.
+    pub(super) fn learned(&self, sensors: Vec<usize>) -> Cluster {
         let mut found = Cluster::new(&self.felt, sensors);
         found.learn_more(&self.felt);
         found

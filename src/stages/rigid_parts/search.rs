@@ -66,6 +66,7 @@ impl Search {
                 clusters = self.assigned(clusters, &every);
             }
             clusters = self.moved(clusters);
+            clusters = self.dispersed(clusters);
             let now: Vec<Vec<usize>> = clusters.iter().map(|own| own.sensors.clone()).collect();
             if now == before {
                 break;

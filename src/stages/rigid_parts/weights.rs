@@ -47,10 +47,10 @@ mod tests {
     use faer::Mat;
     use rand::RngExt;
 
-    use super::super::cluster::{ITERATIONS, LEAST_TOLERANCE};
-    use super::super::completion::Completion;
+    use super::super::cluster::LEAST_TOLERANCE;
     use super::super::medians::median;
-    use super::super::roots::{Roots, product};
+    use super::super::roots::product;
+    use super::super::search::Search;
     use super::*;
     use crate::numerics::rng::stream;
 
@@ -62,14 +62,9 @@ mod tests {
         let errors = uniform(600, 30);
         let values = Mat::from_fn(600, 30, |t, sensor| {
             let own = if t % 10 == 0 { error * errors[(t, sensor)] } else { 0.0 };
-            (exact[(t, sensor)] + own).max(0.0)
+            exact[(t, sensor)] + own
         });
-        let sizes = vec![1.0; 600];
-        let roots = Roots { values, thresholds: sizes.clone(), signed: false };
-        let scales = roots.scales();
-        let roots = roots.scaled(&scales).equalised(&sizes, 0.0);
-        let completed = Completion::new(&roots).velocities;
-        Felt { roots, completed, sizes, tolerance: LEAST_TOLERANCE, iterations: ITERATIONS }
+        Search::of_velocities(&values).felt
     }
 
     fn converged(felt: &Felt) -> Cluster {

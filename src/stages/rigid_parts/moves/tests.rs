@@ -3,9 +3,7 @@
 use faer::Mat;
 use rand::RngExt;
 
-use super::super::cluster::{Felt, ITERATIONS, LEAST_TOLERANCE};
-use super::super::completion::Completion;
-use super::super::roots::{Roots, product};
+use super::super::roots::product;
 use super::*;
 use crate::numerics::rng::stream;
 
@@ -33,22 +31,9 @@ fn felt() -> Search {
             product(uniform(600, 5).as_ref(), own.as_ref())
         })
         .collect();
-    let values = Mat::from_fn(600, 2 * SENSORS, |t, sensor| {
-        velocities[sensor / SENSORS][(t, sensor % SENSORS)].max(0.0)
-    });
-    let sizes = vec![1.0; 600];
-    let roots = Roots { values, thresholds: sizes.clone(), signed: false };
-    let scales = roots.scales();
-    let roots = roots.scaled(&scales).equalised(&sizes, 0.0);
-    let completion = Completion::new(&roots);
-    let felt = Felt {
-        roots,
-        completed: completion.velocities,
-        sizes,
-        tolerance: LEAST_TOLERANCE,
-        iterations: ITERATIONS,
-    };
-    Search::new(felt, completion.affinities)
+    Search::of_velocities(&Mat::from_fn(600, 2 * SENSORS, |t, sensor| {
+        velocities[sensor / SENSORS][(t, sensor % SENSORS)]
+    }))
 }
 
 fn side(part: usize) -> Vec<usize> {

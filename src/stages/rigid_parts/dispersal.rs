@@ -1,0 +1,137 @@
+//! Disperse a cluster among others: one whose sensors others explain, each for itself, is no part.
+//!
+//! Sensors whose normals lie along a hinge, or meet it, feel the same on both of its parts. Those of both parts are alike, and make a
+//! cluster of their own. It is merged with neither part, since some of its sensors do not fit that one.
+
+use std::collections::BTreeMap;
+
+use rayon::prelude::*;
+
+use super::cluster::Cluster;
+use super::search::{EXPLAINED, MIN_SAVING, Search, smallest};
+
+impl Search {
+    /// The clusters, without those whose sensors cost less on others: each sensor then goes where its residual is the smallest. Small
+    /// clusters are tried first.
+    pub(super) fn dispersed(&mut self, clusters: Vec<Cluster>) -> Vec<Cluster> {
+        let mut residuals: Vec<Vec<f64>> = clusters.par_iter().map(|own| own.residuals(&self.felt)).collect();
+        let mut order: Vec<usize> = (0..clusters.len()).collect();
+        order.sort_by_key(|&at| clusters[at].sensors.len());
+        let mut clusters: Vec<Option<Cluster>> = clusters.into_iter().map(Some).collect();
+        for at in order {
+            let Some(unions) = self.unions(&clusters, &residuals, at) else { continue };
+            clusters[at] = None;
+            for (to, union) in unions {
+                union.complete(&mut self.felt);
+                residuals[to] = union.residuals(&self.felt);
+                clusters[to] = Some(union);
+            }
+        }
+        clusters.into_iter().flatten().collect()
+    }
+
+    /// The clusters that take in the sensors of one, with these, if together that costs less.
+    fn unions(
+        &self,
+        clusters: &[Option<Cluster>],
+        residuals: &[Vec<f64>],
+        at: usize,
+    ) -> Option<Vec<(usize, Cluster)>> {
+        let own = clusters[at].as_ref()?;
+        let mut takes: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+        let mut explained = 0;
+        for &sensor in &own.sensors {
+            let by_others = residuals.iter().enumerate().map(|(other, of)| {
+                if other == at || clusters[other].is_none() { f64::INFINITY } else { of[sensor] }
+            });
+            let (to, least) = smallest(by_others)?;
+            explained += usize::from(least <= EXPLAINED * self.felt.tolerance);
+            takes.entry(to).or_default().push(sensor);
+        }
+        // Others may explain the rest only once they have it: it may be all that tells them of a direction.
+        if 2 * explained <= own.sensors.len() {
+            return None;
+        }
+        let unions: Vec<(usize, f64, Cluster)> = takes
+            .into_par_iter()
+            .map(|(to, sensors)| {
+                let before = clusters[to].as_ref().map_or(&[][..], |other| &other.sensors);
+                let union = self.learned([before, &sensors].concat());
+                (to, union.description_length - self.learned(before.to_vec()).description_length, union)
+            })
+            .collect();
+        let cost: f64 = unions.iter().map(|(_, cost, _)| cost).sum();
+        let saving = self.learned(own.sensors.clone()).description_length - cost;
+        let is_shorter = saving > MIN_SAVING && unions.iter().all(|(_, _, union)| self.explains(union));
+        is_shorter.then(|| unions.into_iter().map(|(to, _, union)| (to, union)).collect())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use faer::Mat;
+    use rand::RngExt;
+
+    use super::super::roots::product;
+    use super::*;
+    use crate::numerics::rng::stream;
+
+    /// Sensors of each of two parts on a hinge; the first eight do not feel how it turns.
+    const SENSORS: usize = 24;
+    const EITHER: usize = 8;
+
+    /// What they feel: five components are those of both parts, and the sixth of each is its own. Then come as many of a third part,
+    /// which moves with neither.
+    fn search() -> Search {
+        let mut rng = stream(9, 1, "dispersal", 0);
+        let mut uniform = |rows, columns| Mat::from_fn(rows, columns, |_, _| rng.random_range(-1.0_f64..1.0));
+        let (both, own) = (uniform(600, 5), uniform(600, 2));
+        let other = product(uniform(600, 6).as_ref(), uniform(6, SENSORS).as_ref());
+        let loadings = uniform(6, 2 * SENSORS);
+        let of_hinge = |t: usize, sensor: usize| {
+            let common: f64 = (0..5).map(|k| both[(t, k)] * loadings[(k, sensor)]).sum();
+            let feels = sensor % SENSORS >= EITHER;
+            common + if feels { own[(t, sensor / SENSORS)] * loadings[(5, sensor)] } else { 0.0 }
+        };
+        Search::of_velocities(&Mat::from_fn(600, 3 * SENSORS, |t, sensor| {
+            if sensor < 2 * SENSORS { of_hinge(t, sensor) } else { other[(t, sensor - 2 * SENSORS)] }
+        }))
+    }
+
+    fn part(at: usize) -> Vec<usize> {
+        (at * SENSORS..(at + 1) * SENSORS).collect()
+    }
+
+    fn dispersed(clusters: &[Vec<usize>]) -> Vec<Vec<usize>> {
+        let mut search = search();
+        let clusters = clusters.iter().map(|own| search.learned(own.clone())).collect();
+        let mut found: Vec<Vec<usize>> =
+            search.dispersed(clusters).into_iter().map(|own| own.sensors).collect();
+        found.sort();
+        found
+    }
+
+    #[test]
+    fn sensors_that_feel_the_same_on_both_parts_of_a_hinge_make_no_part() {
+        // With them are some of the second part that feel the hinge, so that the first does not explain all.
+        let either = (0..EITHER).chain(SENSORS..SENSORS + EITHER + 4).collect::<Vec<_>>();
+        let rest = |at: usize| part(at).into_iter().filter(|sensor| !either.contains(sensor)).collect();
+        let found = dispersed(&[rest(0), rest(1), either.clone(), part(2)]);
+        assert_eq!(found.len(), 3, "{found:?}");
+        assert!(found.contains(&part(2)));
+        for at in 0..2 {
+            // Those that feel the same on both may be on either.
+            let feels = part(at).split_off(EITHER);
+            assert!(found.iter().any(|own| feels.iter().all(|sensor| own.contains(sensor))), "{found:?}");
+        }
+    }
+
+    #[test]
+    fn parts_stay() {
+        let parts: Vec<Vec<usize>> = (0..3).map(part).collect();
+        assert_eq!(dispersed(&parts), parts);
+        // Also a small one.
+        let few = [part(0), part(1), part(2).split_off(SENSORS - 6)];
+        assert_eq!(dispersed(&few), few);
+    }
+}
