@@ -73,6 +73,7 @@ mod tests {
     use rand::RngExt;
 
     use super::super::roots::product;
+    use super::super::testing::felt_of;
     use super::*;
     use crate::numerics::rng::stream;
 
@@ -93,9 +94,10 @@ mod tests {
             let feels = sensor % SENSORS >= EITHER;
             common + if feels { own[(t, sensor / SENSORS)] * loadings[(5, sensor)] } else { 0.0 }
         };
-        Search::of_velocities(&Mat::from_fn(600, 3 * SENSORS, |t, sensor| {
+        let (felt, affinities) = felt_of(&Mat::from_fn(600, 3 * SENSORS, |t, sensor| {
             if sensor < 2 * SENSORS { of_hinge(t, sensor) } else { other[(t, sensor - 2 * SENSORS)] }
-        }))
+        }));
+        Search::new(felt, affinities)
     }
 
     fn part(at: usize) -> Vec<usize> {

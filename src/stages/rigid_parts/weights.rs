@@ -50,7 +50,7 @@ mod tests {
     use super::super::cluster::LEAST_TOLERANCE;
     use super::super::medians::median;
     use super::super::roots::product;
-    use super::super::search::Search;
+    use super::super::testing::felt_of;
     use super::*;
     use crate::numerics::rng::stream;
 
@@ -64,7 +64,7 @@ mod tests {
             let own = if t % 10 == 0 { error * errors[(t, sensor)] } else { 0.0 };
             exact[(t, sensor)] + own
         });
-        Search::of_velocities(&values).felt
+        felt_of(&values).0
     }
 
     fn converged(felt: &Felt) -> Cluster {

@@ -4,6 +4,7 @@ use faer::Mat;
 use rand::RngExt;
 
 use super::super::roots::product;
+use super::super::testing::felt_of;
 use super::*;
 use crate::numerics::rng::stream;
 
@@ -31,9 +32,10 @@ fn felt() -> Search {
             product(uniform(600, 5).as_ref(), own.as_ref())
         })
         .collect();
-    Search::of_velocities(&Mat::from_fn(600, 2 * SENSORS, |t, sensor| {
-        velocities[sensor / SENSORS][(t, sensor % SENSORS)]
-    }))
+    let velocities =
+        Mat::from_fn(600, 2 * SENSORS, |t, sensor| velocities[sensor / SENSORS][(t, sensor % SENSORS)]);
+    let (felt, affinities) = felt_of(&velocities);
+    Search::new(felt, affinities)
 }
 
 fn side(part: usize) -> Vec<usize> {
