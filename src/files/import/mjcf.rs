@@ -205,17 +205,16 @@ impl<'a> Bodies<'a> {
                     Some(name) => self.namings[around.naming].join(name),
                     None => self.free_name(),
                 };
-                let element = Element::new(format!("body `{name}`"), node);
-                let own = self.models[around.model].defaults.pose(&element)?;
-                let origin = (around.pose * own).translation.vector;
-                let frame = self.frame(element, node, around)?;
+                let (frame, placed) =
+                    self.frame(Element::new(format!("body `{name}`"), node), node, around)?;
+                let origin = placed.translation.vector;
                 let (turns, solids) = (Vec::new(), Vec::new());
                 self.links.push(Link { name, parent, origin, turns, solids, bare_mass: 0.0, named: None });
                 self.geoms.push(Vec::new());
                 self.inertials.push(None);
                 Ok(Some(Frame { body: Some(self.links.len() - 1), ..frame }))
             }
-            ("frame", _) => self.frame(Element::new(label, node), node, around).map(Some),
+            ("frame", _) => self.frame(Element::new(label, node), node, around).map(|(frame, _)| Some(frame)),
             ("geom", Some(body)) => {
                 let element = defaults.over(label, node, around.class)?;
                 self.geoms[body].push(Geom { element, frame: around.pose, model: around.model });
@@ -236,12 +235,17 @@ impl<'a> Bodies<'a> {
         }
     }
 
-    /// The frame that an element is.
-    fn frame(&self, element: Element<'a>, node: Node<'a, 'a>, around: Frame<'a>) -> Result<Frame<'a>, Wrong> {
+    /// The frame that what is within an element is in, and where the element itself is.
+    fn frame(
+        &self,
+        element: Element<'a>,
+        node: Node<'a, 'a>,
+        around: Frame<'a>,
+    ) -> Result<(Frame<'a>, Isometry3<f64>), Wrong> {
         let defaults = &self.models[around.model].defaults;
-        let own = defaults.pose(&element)?;
-        let pose = if defaults.is_global { around.pose } else { around.pose * own };
-        Ok(Frame { pose, class: node.attribute("childclass").or(around.class), ..around })
+        let placed = around.pose * defaults.pose(&element)?;
+        let pose = if defaults.is_global { around.pose } else { placed };
+        Ok((Frame { pose, class: node.attribute("childclass").or(around.class), ..around }, placed))
     }
 
     /// A name for a body that has none.

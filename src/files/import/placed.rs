@@ -110,7 +110,7 @@ pub(super) fn weigh(solids: &mut [Solid], mass: f64) {
     }
 }
 
-/// What a link of this name consists of: these shapes, or the box of its inertia if meshes are missing and nothing is left; all with
+/// What a link of this name consists of: these shapes, and the box of its inertia if meshes are missing and what is left is too small for the mass; all with
 /// the mass, kg, of the link, and without what only marks a place. Also the mass if it has no shape, 0 otherwise. Messages call a
 /// link `word`.
 ///
