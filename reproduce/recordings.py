@@ -4,7 +4,7 @@
 Downloads the files that recordings.toml names into FOLDER of --files, where they are not there yet, and checks each. Imports each
 as a body, feels its movement (`bodyschema simulate --movement`), and asks `bodyschema estimate` how what it finds compares with the truth.
 Writes recordings.csv and README.md into the folder of --out, which is docs/shown/recordings. Needs Python 3.11, and no packages.
-Takes about six minutes on two cores. Status: 0, or 2 on an error.
+Takes about 12 minutes on two cores. Status: 0, or 2 on an error.
 """
 
 import argparse

@@ -55,8 +55,9 @@ class Joints:
         Bootstrap support of each joint, 0 to 1, given the parts.
     pairs : ndarray of shape (K (K − 1) / 2, 2), int64
         All pairs of parts.
-    pair_correlation, pair_support : ndarray of shape (K (K − 1) / 2,), float64
-        Canonical correlation of the speed of a joint between the two parts, and its bootstrap support, each 0 to 1.
+    pair_correlation, pair_information, pair_support : ndarray of shape (K (K − 1) / 2,), float64
+        Canonical correlation of the speed of a joint between the two parts, 0 to 1; information of that joint, nats, of which the tree
+        has the most; and its bootstrap support, 0 to 1.
     dropped : dict of int to str
         Sensors that were left out, and why.
     """
@@ -67,6 +68,7 @@ class Joints:
     support: np.ndarray
     pairs: np.ndarray
     pair_correlation: np.ndarray
+    pair_information: np.ndarray
     pair_support: np.ndarray
     dropped: Mapping[int, str]
 
@@ -269,8 +271,8 @@ def estimate(
     Notes
     -----
     Sensors are clustered by the motion subspaces of rigid parts, in the way of motion segmentation (Costeira and Kanade 1998). Parts
-    are joined by the maximum spanning tree of the canonical correlations of joint speeds; support is that of Felsenstein's bootstrap
-    (1985). docs/estimate.md has the theory and how often the result is right. This is an extension: it is not in the paper.
+    are joined by the tree of most information between them (Chow and Liu 1968), above all of the speeds of joints; support is that of
+    Felsenstein's bootstrap (1985). docs/estimate.md has the theory and how often the result is right. This is an extension: it is not in the paper.
 
     Examples
     --------
@@ -370,7 +372,7 @@ def estimate_tree(
 
 
 def _joined(facts: Mapping[str, Any], shows_tree: bool) -> dict[str, Any]:
-    names = ["labels", "ranks", "pairs", "pair_correlation", "pair_support"]
+    names = ["labels", "ranks", "pairs", "pair_correlation", "pair_information", "pair_support"]
     joints = {name: facts[name] for name in names}
     joints["tree"] = facts["tree"] if shows_tree else np.empty((0, 2), dtype=np.int64)
     joints["support"] = facts["support"] if shows_tree else np.empty(0)

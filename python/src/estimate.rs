@@ -213,5 +213,6 @@ fn joined(facts: &Bound<'_, PyDict>, joints: &Joints) -> PyResult<()> {
     let numbers = |number: fn(&Pair) -> f64| -> Vec<f64> { joints.pairs.iter().map(number).collect() };
     facts.set_item("pairs", edges(py, joints.pairs.iter().map(|pair| (pair.part, pair.other)))?)?;
     facts.set_item("pair_correlation", numbers(|pair| pair.correlation).into_pyarray(py))?;
+    facts.set_item("pair_information", numbers(|pair| pair.information).into_pyarray(py))?;
     facts.set_item("pair_support", numbers(|pair| pair.support).into_pyarray(py))
 }

@@ -62,6 +62,7 @@ def test_estimate(folder, tmp_path, command, moved, kind):
     pairs = table(tmp_path / "found/edges.csv")
     assert found.pairs.tolist() == [[row["part"], row["other"]] for row in pairs]
     assert found.pair_correlation.tobytes() == pairs["correlation"].tobytes()
+    assert found.pair_information.tobytes() == pairs["information"].tobytes()
     assert found.pair_support.tobytes() == pairs["support"].tobytes()
 
 

@@ -35,6 +35,7 @@ def test_the_arrays_are_of_the_shapes_that_are_promised(moved, found):
         ("support", (2,), np.float64),
         ("pairs", (3, 2), np.int64),
         ("pair_correlation", (3,), np.float64),
+        ("pair_information", (3,), np.float64),
         ("pair_support", (3,), np.float64),
         ("samples", (1000,), np.int64),
         ("mapped", (sensors,), np.int64),

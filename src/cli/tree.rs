@@ -54,6 +54,7 @@ struct EdgeRow {
     part: usize,
     other: usize,
     correlation: f64,
+    information: f64,
     support: f64,
     in_tree: bool,
 }
@@ -138,10 +139,11 @@ pub(super) fn write(out: &Path, found: &Joints, labels: &[usize]) -> Result<()> 
         part: pair.part,
         other: pair.other,
         correlation: pair.correlation,
+        information: pair.information,
         support: pair.support,
         in_tree: pair.in_tree,
     });
-    let columns = ["part", "other", "correlation", "support", "in_tree"];
+    let columns = ["part", "other", "correlation", "information", "support", "in_tree"];
     Ok(write_rows_of(&out.join("edges.csv"), &columns, pairs)?)
 }
 

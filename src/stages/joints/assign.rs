@@ -10,15 +10,14 @@ use nalgebra::DMatrix;
 use rayon::prelude::*;
 
 use super::cross_moments::{CrossMoments, Extended};
+use super::information::of_speeds;
 use super::tree::maximum_spanning_tree;
 use crate::stages::rigid_parts::MotionSubspace;
 
 /// Information, in nats, that the tree must gain by an assignment.
-const MIN_GAIN: f64 = 0.05;
+const MIN_GAIN: f64 = 0.025;
 /// The same by a move from one part to another.
-const MIN_MOVE_GAIN: f64 = 0.01;
-/// Unexplained share of a joint's squared speed below which an edge gains hardly any more information.
-const NEGLIGIBLE: f64 = 1e-3;
+const MIN_MOVE_GAIN: f64 = 0.005;
 /// Most times that moves of all clusters are tried.
 const MAX_SWEEPS: usize = 3;
 
@@ -92,11 +91,10 @@ fn largest(values: impl Iterator<Item = f64>) -> Option<(usize, f64)> {
     values.enumerate().reduce(|best, other| if other.1 > best.1 { other } else { best })
 }
 
-/// What the edges of the maximum spanning tree say of joint speeds, in nats: for two Gaussians of correlation ρ, −ln(1 − ρ²) is
-/// twice their mutual information.
+/// What the edges of the maximum spanning tree say of joint speeds, in nats.
 fn information(correlations: &DMatrix<f64>) -> f64 {
-    let of = |correlation: f64| -(1.0 - correlation * correlation + NEGLIGIBLE).ln();
-    maximum_spanning_tree(correlations).iter().map(|edge| of(correlations[(edge.child, edge.parent)])).sum()
+    let edges = maximum_spanning_tree(correlations);
+    edges.iter().map(|edge| of_speeds(correlations[(edge.child, edge.parent)])).sum()
 }
 
 /// Clusters that are tried on a part.

@@ -1,87 +1,127 @@
-//! Sum the products of quadratic monomials of all motions over blocks of samples: all that correlations and their bootstrap need.
+//! Sum the products of components and of quadratic monomials of all motions over blocks of samples: all that the tree and its
+//! bootstrap need.
 
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 
 use super::correlation::{QuadraticForms, correlation};
+use super::information::{Gaussian, mutual_information, of_joint};
 use crate::numerics::interrupt;
 use crate::stages::rigid_parts::MotionSubspace;
 
 /// Weight of a sample at which the whole body hardly moves, in units of its mean square.
 const REST: f64 = 1e-3;
 
-/// Sums over samples of the products of all quadratic monomials of all motions, by blocks of samples.
+/// What the motions of all parts say of each other: sums of products over blocks of samples.
 #[derive(Debug, Clone)]
 pub(super) struct Moments {
-    /// Where the monomials of each part begin, and where the last end.
-    starts: Vec<usize>,
-    /// For each block, monomials × monomials.
-    blocks: Vec<DMatrix<f64>>,
+    /// Of the components w_i of all motions.
+    components: Products,
+    /// Of their quadratic monomials w_i w_j.
+    monomials: Products,
+}
+
+/// How much each part has to do with each other one: parts × parts, symmetric.
+pub(super) struct Dependence {
+    /// [`correlation`] of the squared speeds of a joint, 0 to 1; 1 on the diagonal.
+    pub correlations: DMatrix<f64>,
+    /// [`information`](super::information) of a joint, nats; 0 on the diagonal.
+    pub information: DMatrix<f64>,
 }
 
 impl Moments {
     /// Of the motions of all parts at the same T samples, in blocks of nearly equal length.
     ///
-    /// A monomial is w_i w_j divided by the root of the whole body's Σ |w|² at the sample, so that fast movements count in
-    /// proportion to speed, not to its square.
+    /// The components of a sample are divided by the fourth root of the whole body's Σ |w|² there. So monomials are divided by its
+    /// root, and fast movements count in proportion to speed, not to its square.
     pub(super) fn new(motions: &[MotionSubspace], samples: usize, blocks: usize) -> Self {
-        let mut starts = vec![0];
-        for MotionSubspace { rank: k, .. } in motions {
-            starts.push(starts[starts.len() - 1] + k * (k + 1) / 2);
-        }
-        let all = starts[motions.len()];
+        let ranks: Vec<usize> = motions.iter().map(|motion| motion.rank).collect();
         let scales = scales(motions, samples);
-        let block = |at: usize| {
-            let samples = at * samples / blocks..(at + 1) * samples / blocks;
-            let mut monomials = DMatrix::zeros(samples.len(), all);
-            // The others stay 0.
-            for (row, t) in samples.enumerate().filter(|(_, t)| scales[*t] > 0.0) {
-                let mut column = 0;
-                for motion in motions {
-                    let w = motion.at(t);
-                    for i in 0..w.len() {
-                        for j in i..w.len() {
-                            monomials[(row, column)] = scales[t] * w[i] * w[j];
-                            column += 1;
-                        }
-                    }
-                }
-            }
-            monomials.transpose() * &monomials
+        let blocks = if scales.iter().any(|scale| *scale > 0.0) { blocks } else { 0 };
+        let components = |t: usize| motions.iter().flat_map(move |motion| motion.at(t).iter().copied());
+        let monomials = |t: usize| {
+            motions.iter().flat_map(move |motion| {
+                let w = motion.at(t);
+                (0..w.len()).flat_map(move |i| (i..w.len()).map(move |j| w[i] * w[j]))
+            })
         };
-        let moves = scales.iter().any(|scale| *scale > 0.0);
-        let blocks = if moves { (0..blocks).into_par_iter().map(block).collect() } else { Vec::new() };
-        Self { starts, blocks }
+        // A sample that counts nothing may have an unknown motion.
+        let scaled = |scale: f64| move |value: f64| if scale > 0.0 { scale * value } else { 0.0 };
+        let lengths = ranks.iter().map(|k| k * (k + 1) / 2);
+        Self {
+            monomials: Products::new(lengths, samples, blocks, |t| monomials(t).map(scaled(scales[t]))),
+            components: Products::new(ranks.iter().copied(), samples, blocks, |t| {
+                components(t).map(scaled(scales[t].sqrt()))
+            }),
+        }
     }
 
     /// Number of blocks; none if nothing moves.
     pub(super) fn blocks(&self) -> usize {
-        self.blocks.len()
+        self.monomials.blocks.len()
     }
 
-    /// The [`correlation`] of each pair of parts over all samples: parts × parts, 0 to 1, symmetric, 1 on the diagonal.
-    pub(super) fn correlations(&self) -> DMatrix<f64> {
-        self.resampled_correlations(&vec![1; self.blocks()])
+    /// What the motions say over all samples.
+    pub(super) fn dependence(&self) -> Dependence {
+        self.resampled(&vec![1; self.blocks()])
     }
 
     /// The same over a bootstrap resample that has each block so many times.
-    pub(super) fn resampled_correlations(&self, counts: &[usize]) -> DMatrix<f64> {
+    pub(super) fn resampled(&self, counts: &[usize]) -> Dependence {
         interrupt::check();
-        let moments = self.sum(counts);
-        let parts = self.starts.len() - 1;
-        let length = |part: usize| self.starts[part + 1] - self.starts[part];
-        let block = |a: usize, b: usize| {
-            moments.view((self.starts[a], self.starts[b]), (length(a), length(b))).into_owned()
+        let (linear, quadratic) = (self.components.sum(counts), self.monomials.sum(counts));
+        let parts = self.components.starts.len() - 1;
+        let own = |part: usize| {
+            let pairs = monomials(self.components.length(part));
+            let forms = QuadraticForms::new(pairs, self.monomials.of(&quadratic, part, part));
+            (forms, Gaussian::new(self.components.of(&linear, part, part)))
         };
-        let rank = |part: usize| (0..).find(|k| k * (k + 1) / 2 == length(part)).expect("whole");
-        let forms: Vec<_> =
-            (0..parts).map(|part| QuadraticForms::new(monomials(rank(part)), block(part, part))).collect();
-        let mut correlations = DMatrix::identity(parts, parts);
+        let own: Vec<_> = (0..parts).map(own).collect();
+        let (mut correlations, mut information) =
+            (DMatrix::identity(parts, parts), DMatrix::zeros(parts, parts));
         for (a, b) in (0..parts).flat_map(|a| (a + 1..parts).map(move |b| (a, b))) {
-            correlations[(a, b)] = correlation(&forms[a], &forms[b], &block(a, b));
-            correlations[(b, a)] = correlations[(a, b)];
+            let found = correlation(&own[a].0, &own[b].0, &self.monomials.of(&quadratic, a, b));
+            let shared = mutual_information(&own[a].1, &own[b].1, &self.components.of(&linear, a, b));
+            for at in [(a, b), (b, a)] {
+                correlations[at] = found;
+                information[at] = of_joint(found, shared);
+            }
         }
-        correlations
+        Dependence { correlations, information }
+    }
+}
+
+/// Sums over samples of the products of all features of all parts, by blocks of samples.
+#[derive(Debug, Clone)]
+struct Products {
+    /// Where the features of each part begin, and where the last end.
+    starts: Vec<usize>,
+    /// For each block, features × features.
+    blocks: Vec<DMatrix<f64>>,
+}
+
+impl Products {
+    /// Of so many features of each part. `features` are those of all parts at a sample.
+    fn new<F: Iterator<Item = f64>>(
+        lengths: impl Iterator<Item = usize>,
+        samples: usize,
+        blocks: usize,
+        features: impl Fn(usize) -> F + Sync,
+    ) -> Self {
+        let mut starts = vec![0];
+        lengths.for_each(|length| starts.push(starts[starts.len() - 1] + length));
+        let all = starts[starts.len() - 1];
+        let block = |at: usize| {
+            let samples = at * samples / blocks..(at + 1) * samples / blocks;
+            let values = DMatrix::from_iterator(all, samples.len(), samples.flat_map(&features));
+            &values * values.transpose()
+        };
+        Self { starts, blocks: (0..blocks).into_par_iter().map(block).collect() }
+    }
+
+    /// Number of features of a part.
+    fn length(&self, part: usize) -> usize {
+        self.starts[part + 1] - self.starts[part]
     }
 
     /// The sum over blocks, each counted so many times.
@@ -92,6 +132,11 @@ impl Moments {
             sum.zip_apply(block, |sum, moment| *sum += moment * count as f64);
         }
         sum
+    }
+
+    /// Of such a sum, the products of the features of two parts.
+    fn of(&self, sum: &DMatrix<f64>, a: usize, b: usize) -> DMatrix<f64> {
+        sum.view((self.starts[a], self.starts[b]), (self.length(a), self.length(b))).into_owned()
     }
 }
 

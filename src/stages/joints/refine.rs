@@ -17,7 +17,7 @@ use crate::stages::sense::Tactile;
 /// Samples that similarity is computed from, spread over all.
 const MAX_SAMPLES: usize = 2000;
 /// Information, in nats, that the tree must gain by merging a small part with another, so that the part is spurious.
-const SPURIOUS: f64 = 1.0;
+const SPURIOUS: f64 = 0.5;
 /// Rank from which on a part is no piece of another: a cylinder feels its motion but its spin.
 const WHOLE_RANK: usize = 5;
 /// Unassigned clusters that are tried on parts, the largest: memory grows with the square of their number.

@@ -1,0 +1,119 @@
+//! Measure what the motions of two parts say of each other: mutual information of Gaussian variables, in nats.
+//!
+//! A joint shows in two ways. Both of its parts feel the speed of one point, however it bends. And as far as it does not bend, the motion
+//! of one part is a linear map of that of the other; parts that are further apart in the tree lose some of it with each joint between them.
+//! Over all trees, that of most information is the most likely one (Chow and Liu 1968). That holds if joints move independently of
+//! each other. Where they are coordinated, as in a walk, opposite limbs share more than neighbours do; only speeds tell the truth
+//! then. So the linear share counts little: it decides where samples are few, and quadratic forms of any two parts may agree.
+
+use nalgebra::{Cholesky, DMatrix, Dyn};
+
+/// Unexplained share of a joint's squared speed below which a joint tells hardly any more.
+const NEGLIGIBLE: f64 = 1e-3;
+/// Weight of the linear share.
+const LINEAR: f64 = 0.1;
+/// What is added to the variances of components, as a share of their mean: those of hardly any variance are noise.
+const RIDGE: f64 = 1e-3;
+
+/// Of squared joint speeds of this correlation, 0 to 1: −½ ln(1 − ρ²), but for a share that is negligible.
+pub(super) fn of_speeds(correlation: f64) -> f64 {
+    -0.5 * (1.0 - correlation * correlation + NEGLIGIBLE).ln()
+}
+
+/// Of a joint, from the correlation of its squared speeds and the mutual information of the motions of its parts, nats.
+pub(super) fn of_joint(correlation: f64, mutual: f64) -> f64 {
+    of_speeds(correlation) + LINEAR * mutual
+}
+
+/// The motion of a part as a Gaussian variable.
+pub(super) struct Gaussian {
+    /// The Cholesky factor of its moments, with a ridge.
+    factor: Cholesky<f64, Dyn>,
+}
+
+impl Gaussian {
+    /// From sums over samples of the products of its components, k × k; `None` if the part feels nothing.
+    pub(super) fn new(mut moments: DMatrix<f64>) -> Option<Self> {
+        let k = moments.nrows();
+        let ridge = RIDGE * moments.trace() / k.max(1) as f64;
+        (0..k).for_each(|at| moments[(at, at)] += ridge);
+        let factor = (k > 0).then(|| moments.cholesky()).flatten()?;
+        Some(Self { factor })
+    }
+}
+
+/// Of two motions, from sums over samples of the products of a component of each: −½ ln det(1 − R Rᵀ), where R has the correlations of
+/// the whitened components; 0 where a part feels nothing.
+pub(super) fn mutual_information(
+    first: &Option<Gaussian>,
+    second: &Option<Gaussian>,
+    products: &DMatrix<f64>,
+) -> f64 {
+    let (Some(first), Some(second)) = (first, second) else { return 0.0 };
+    let half = first.factor.l_dirty().solve_lower_triangular(products).expect("a factor is regular");
+    let r = second.factor.l_dirty().solve_lower_triangular(&half.transpose()).expect("a factor is regular");
+    let left = DMatrix::identity(r.ncols(), r.ncols()) - r.transpose() * &r;
+    left.cholesky().map_or(0.0, |left| -left.l_dirty().diagonal().iter().map(|own| own.ln()).sum::<f64>())
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::RngExt;
+
+    use super::*;
+    use crate::numerics::rng::stream;
+
+    /// The information between two variables, samples × components.
+    fn between(x: &DMatrix<f64>, y: &DMatrix<f64>) -> f64 {
+        let own = |values: &DMatrix<f64>| Gaussian::new(values.transpose() * values);
+        mutual_information(&own(x), &own(y), &(x.transpose() * y))
+    }
+
+    /// Independent values about 0, of one variance.
+    fn noise(number: usize, components: usize) -> DMatrix<f64> {
+        let mut rng = stream(1, 1, "information", number);
+        DMatrix::from_fn(20_000, components, |_, _| rng.random_range(-1.0..1.0))
+    }
+
+    #[test]
+    fn information_is_that_of_the_canonical_correlations() {
+        let (x, e) = (noise(0, 2), noise(1, 2));
+        // The first components correlate at 0.6, and the second do not.
+        let mixed =
+            DMatrix::from_fn(
+                20_000,
+                2,
+                |t, at| {
+                    if at == 0 { 0.6 * x[(t, 0)] + 0.8 * e[(t, 0)] } else { e[(t, 1)] }
+                },
+            );
+        let expected = -0.5 * (1.0_f64 - 0.36).ln();
+        assert!((between(&x, &mixed) - expected).abs() < 0.01, "{}", between(&x, &mixed));
+        // No linear map of a motion changes it, but for the ridge.
+        let map = DMatrix::from_row_slice(2, 2, &[2.0, 0.3, -1.0, 1.5]);
+        assert!((between(&(&x * map), &mixed) - expected).abs() < 0.01);
+    }
+
+    #[test]
+    fn a_neighbour_tells_more_than_its_neighbour() {
+        let first = noise(0, 3);
+        let second = &first + noise(1, 3) * 0.4;
+        let third = &second + noise(2, 3) * 0.4;
+        assert!(between(&first, &second) > 1.2 * between(&first, &third));
+        assert!(between(&second, &third) > 1.2 * between(&first, &third));
+    }
+
+    #[test]
+    fn equal_motions_tell_a_finite_amount_and_no_motion_tells_nothing() {
+        let x = noise(0, 3);
+        assert!((3.0..20.0).contains(&between(&x, &x)), "{}", between(&x, &x));
+        assert_eq!(between(&x, &DMatrix::zeros(20_000, 2)), 0.0);
+        assert_eq!(between(&x, &DMatrix::zeros(20_000, 0)), 0.0);
+    }
+
+    #[test]
+    fn more_of_a_joints_speed_tells_more() {
+        let found: Vec<f64> = [0.0, 0.5, 0.99, 1.0].map(of_speeds).to_vec();
+        assert!(found.is_sorted() && found[0].abs() < 0.001 && found[3] < 3.5, "{found:?}");
+    }
+}
