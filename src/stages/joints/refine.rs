@@ -110,7 +110,7 @@ impl<'a> Refinement<'a> {
     fn motions(&mut self, clusters: &[&Vec<usize>]) -> Vec<MotionSubspace> {
         let found = |sensors: &Vec<usize>| {
             let series: Vec<&[f32]> = sensors.iter().map(|&sensor| self.series[sensor]).collect();
-            (sensors.clone(), MotionSubspace::of_cluster(&series, None, self.signed))
+            (sensors.clone(), MotionSubspace::of_cluster(&series, self.signed))
         };
         let new = clusters.par_iter().filter(|sensors| !self.known.contains_key(**sensors));
         let new: Vec<(Vec<usize>, MotionSubspace)> = new.map(|sensors| found(sensors)).collect();

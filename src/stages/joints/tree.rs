@@ -8,8 +8,7 @@ use rand::{Rng, RngExt};
 use rayon::prelude::*;
 
 use super::moments::{Dependence, Moments};
-use crate::numerics::partition::sizes;
-use crate::stages::rigid_parts::MotionSubspace;
+use crate::stages::rigid_parts::{MotionSubspace, motions_of_parts};
 use crate::stages::sense::Tactile;
 use crate::stages::tree::{Edge, prim};
 
@@ -130,18 +129,7 @@ fn parts_and_motions(
     rank: Option<usize>,
 ) -> (Vec<usize>, Vec<MotionSubspace>) {
     assert_eq!(labels.len(), tactile.sensors(), "a part for each sensor");
-    let known: Vec<usize> = labels.iter().copied().flatten().collect();
-    let parts: Vec<usize> = sizes(&known).into_keys().collect();
-    let series = |part: usize| -> Vec<&[f32]> {
-        let own = tactile.series().zip(labels).filter(|(_, label)| **label == Some(part));
-        own.map(|(series, _)| series).collect()
-    };
-    let own = |part: usize| match rank {
-        None => MotionSubspace::of_part(&series(part), signed),
-        given => MotionSubspace::of_cluster(&series(part), given, signed),
-    };
-    let motions = parts.iter().map(|&part| own(part)).collect();
-    (parts, motions)
+    motions_of_parts(tactile, signed, labels, rank).into_iter().unzip()
 }
 
 /// Number of blocks of so many samples.

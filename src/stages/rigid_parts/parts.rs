@@ -8,24 +8,19 @@ use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 
-use super::cluster::{Cluster, Felt, ITERATIONS, MIN_FREEDOM};
-use super::completion::Completion;
+use super::cluster::{Cluster, MIN_FREEDOM};
 use super::faces::similar;
 use super::factorisation::MAX_RANK;
-use super::floor::{floors, telling_samples, typical_floor};
 use super::medians::typical_size;
-use super::roots::Roots;
-use super::search::{MIN_SENSORS, Search};
+use super::prepared::Prepared;
+use super::search::MIN_SENSORS;
 use super::separation::explaining;
-use super::subspace::{Loadings, MotionSubspace, ROTATION_RANK};
+use super::subspace::{MotionSubspace, ROTATION_RANK};
 use crate::numerics::partition::named_by_appearance;
 use crate::stages::sense::Tactile;
 
 /// Samples at which a sensor must feel something to be searched for: four for each of the six numbers of its c.
 const MIN_FELT: usize = 4 * MAX_RANK;
-/// Samples that parts are searched on, spread over all at which anything is felt.
-const MAX_SAMPLES: usize = 1500;
-
 /// The part of each of M sensors, and how well its motion explains what the sensor feels.
 ///
 /// A residual is the share of the mean square of a sensor's roots that the motion of a part leaves unexplained: 0 if it explains
@@ -56,54 +51,34 @@ pub struct RigidParts {
 /// # Panics
 /// If `sensors` is empty or names a sensor beyond M, or T is 0.
 pub fn rigid_parts(tactile: &Tactile, signed: bool, sensors: &[usize]) -> RigidParts {
-    let all: Vec<&[f32]> = tactile.series().collect();
-    let series_of = |sensors: &[usize]| sensors.iter().map(|&sensor| all[sensor]).collect::<Vec<&[f32]>>();
-    let floors = floors(&all);
-    let samples = telling_samples(
-        &series_of(sensors),
-        &sensors.iter().map(|&sensor| floors[sensor]).collect::<Vec<_>>(),
-        MAX_SAMPLES,
-    );
-    let every = Roots::at(&all, &samples, signed);
-    let scales = every.scales();
-    let floor = typical_floor(&floors, &scales);
-    let every = every.scaled(&scales);
-    let sizes = every.select(sensors).sizes();
-    let mut every = every.equalised(&sizes, floor);
+    let mut prepared = Prepared::new(tactile, signed, sensors);
+    let count = prepared.series.len();
     // Sensors that feel something at fewer samples tell next to nothing, and span motions of their own. They go to the part that explains
     // them best, unless nearly all are such.
-    let tells: Vec<bool> = (0..all.len()).map(|sensor| every.felt_samples(sensor) >= MIN_FELT).collect();
+    let tells: Vec<bool> = (0..count).map(|sensor| prepared.roots.felt_samples(sensor) >= MIN_FELT).collect();
     let telling: Vec<usize> = sensors.iter().copied().filter(|&sensor| tells[sensor]).collect();
     let are_enough = telling.len() >= MIN_SENSORS;
     let sensors = if are_enough { &telling } else { sensors };
-    let some = series_of(sensors);
-    let roots = every.select_as_they_are(sensors);
-    let completion = Completion::new(&roots);
-    let felt = Felt {
-        roots,
-        completed: completion.velocities,
-        sizes: sizes.clone(),
-        tolerance: 0.0,
-        iterations: ITERATIONS,
-    };
-    let mut search = Search::new(felt, completion.affinities);
+    let mut search = prepared.search(sensors);
     let mut parts = parts_of(search.clusters());
     if parts.is_empty() {
         parts.push(search.whole());
     }
     // As the search has weighed the samples.
-    every.divide(&search.felt.sizes.iter().zip(&sizes).map(|(now, before)| now / before).collect::<Vec<_>>());
-    let mut labels: Vec<Option<usize>> = vec![None; all.len()];
+    let weights = search.felt.sizes.iter().zip(&prepared.sizes).map(|(now, before)| now / before);
+    prepared.roots.divide(&weights.collect::<Vec<_>>());
+    let every = &prepared.roots;
+    let mut labels: Vec<Option<usize>> = vec![None; count];
     for (at, part) in parts.iter().enumerate() {
         part.sensors.iter().for_each(|&sensor| labels[sensors[sensor]] = Some(at));
     }
-    let residuals: Vec<Vec<f64>> = parts.par_iter().map(|part| part.shares(&every)).collect();
+    let residuals: Vec<Vec<f64>> = parts.par_iter().map(|part| part.shares(every)).collect();
     for (sensor, label) in labels.iter_mut().enumerate() {
         let most = if are_enough && !tells[sensor] { f64::INFINITY } else { search.most_residual() };
         *label = label.or_else(|| explaining(&residuals, sensor, most));
     }
-    let rest: Vec<usize> = (0..all.len()).filter(|&sensor| labels[sensor].is_none()).collect();
-    let groups = similar(&every, &rest);
+    let rest: Vec<usize> = (0..count).filter(|&sensor| labels[sensor].is_none()).collect();
+    let groups = similar(every, &rest);
     for (at, group) in groups.iter().enumerate() {
         group.iter().for_each(|&sensor| labels[sensor] = Some(parts.len() + at));
     }
@@ -119,13 +94,13 @@ pub fn rigid_parts(tactile: &Tactile, signed: bool, sensors: &[usize]) -> RigidP
     };
     let residual = |sensor: usize| residuals.get(labels[sensor]).map_or(0.0, |own| own[sensor]);
     RigidParts {
-        residuals: (0..all.len()).map(residual).collect(),
-        alternatives: (0..all.len()).map(alternatives).collect(),
+        residuals: (0..count).map(residual).collect(),
+        alternatives: (0..count).map(alternatives).collect(),
         unassigned: (parts.len()..parts.len() + groups.len()).map(|at| names[&at]).collect(),
         motions: parts
             .iter()
             .enumerate()
-            .map(|(at, part)| (names[&at], motion(part, &some, &samples, floor, signed)))
+            .map(|(at, part)| (names[&at], prepared.motion(part, sensors)))
             .collect(),
         labels: named,
     }
@@ -138,15 +113,6 @@ fn parts_of(clusters: Vec<Cluster>) -> Vec<Cluster> {
         own.freedom >= MIN_FREEDOM && (own.rank() >= ROTATION_RANK || own.sensors.len() >= small)
     };
     clusters.into_iter().filter(is_part).collect()
-}
-
-/// The motion of a part at all samples, from what was learned at some.
-fn motion(part: &Cluster, series: &[&[f32]], samples: &[usize], floor: f64, signed: bool) -> MotionSubspace {
-    let series: Vec<&[f32]> = part.representatives.iter().map(|&sensor| series[sensor]).collect();
-    let scales = Roots::at(&series, samples, signed).scales();
-    let given =
-        Loadings { values: part.whitened_loadings(), scales, deviation: part.variance().sqrt(), floor };
-    MotionSubspace::of_loadings(&series, &given, signed)
 }
 
 #[cfg(test)]

@@ -89,14 +89,19 @@ impl Search {
         Cluster::new(&self.felt, (0..self.felt.roots.sensors()).collect())
     }
 
-    /// The seed clusters that one motion explains. What it leaves of most of them sets the tolerance, and weighs the samples.
+    /// The seed clusters that one motion explains.
     fn seed_clusters(&mut self, sensors: &[usize]) -> Vec<Cluster> {
         let seeds = self.seeds(sensors, SEED_SENSORS[1]);
-        self.set_tolerance(&seeds);
-        let found = self.unmixed(&seeds);
-        weigh(&mut self.felt, &found);
-        self.set_tolerance(&seeds);
+        self.calibrate(&seeds);
         self.unmixed(&seeds)
+    }
+
+    /// Sets the tolerance to what one motion leaves of most of these clusters, and weighs the samples by what it leaves there.
+    pub(super) fn calibrate(&mut self, clusters: &[Vec<usize>]) {
+        self.set_tolerance(clusters);
+        let found = self.unmixed(clusters);
+        weigh(&mut self.felt, &found);
+        self.set_tolerance(clusters);
     }
 
     /// Sets the tolerance to the residual variance that one motion leaves of most of these seed clusters, within bounds.

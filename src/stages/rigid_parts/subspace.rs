@@ -3,8 +3,7 @@
 use faer::Mat;
 use rayon::prelude::*;
 
-use super::faces::faces;
-use super::factorisation::{Fit, MAX_RANK};
+use super::factorisation::Fit;
 use super::roots::Roots;
 use super::stratified::stratified;
 
@@ -22,7 +21,7 @@ pub(super) const ROTATION_RANK: usize = 3;
 /// The motion subspace of a part: a basis of it, which is the motion of the part up to a linear map.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct MotionSubspace {
-    /// k, at most [`MAX_RANK`] if it is that of one cluster of sensors; 0 if these feel nothing.
+    /// k, at most six if it is that of one cluster of sensors; 0 if these feel nothing.
     pub rank: usize,
     /// w, T × k, by sample, in √Pa; along the principal axes of what the sensors feel. NaN at a sample at which fewer than k sensors have
     /// a value.
@@ -44,12 +43,11 @@ pub(super) struct Loadings {
 impl MotionSubspace {
     /// Of the sensors of a cluster, from their series of T pressures, NaN where one is missing.
     ///
-    /// `rank` is k; without it, the lowest that explains nearly what the best one does. `signed` says whether negative pressures
-    /// are signal.
-    pub(crate) fn of_cluster(series: &[&[f32]], rank: Option<usize>, signed: bool) -> Self {
+    /// The rank is the lowest that explains nearly what the best one does. `signed` says whether negative pressures are signal.
+    pub(crate) fn of_cluster(series: &[&[f32]], signed: bool) -> Self {
         let series: Vec<&[f32]> =
             stratified(series.len(), MAX_SENSORS).map(|sensor| series[sensor]).collect();
-        let Some(fit) = learn(&Roots::at(&series, &felt_samples(&series, MAX_SAMPLES), signed), rank) else {
+        let Some(fit) = learn(&Roots::at(&series, &felt_samples(&series, MAX_SAMPLES), signed)) else {
             return Self { rank: 0, basis: Vec::new() };
         };
         Self::from_orthonormal(&series, fit.loadings(), signed)
@@ -90,30 +88,6 @@ impl MotionSubspace {
         Self { rank: k, basis }
     }
 
-    /// Of all sensors of a part: of its large faces together, and of each face of rank one or two by itself, since few such
-    /// sensors would hardly count among the rest.
-    ///
-    /// Where these ranks sum up to more than [`MAX_RANK`], faces share components, and one subspace is learned from all sensors.
-    pub(crate) fn of_part(series: &[&[f32]], signed: bool) -> Self {
-        let samples = series.first().map_or(0, |series| series.len());
-        let some: Vec<usize> = stratified(samples, MAX_SAMPLES).collect();
-        let every: Vec<usize> = (0..series.len()).collect();
-        let faces = faces(&Roots::at(series, &some, signed), &every);
-        let largest = faces.iter().map(Vec::len).max().unwrap_or(0);
-        let of = |face: &[usize]| {
-            Self::of_cluster(&face.iter().map(|&sensor| series[sensor]).collect::<Vec<_>>(), None, signed)
-        };
-        let by_itself = |face: &Vec<usize>| {
-            (face.len() < largest).then(|| of(face)).filter(|own| own.rank < ROTATION_RANK)
-        };
-        let alone: Vec<Option<Self>> = faces.par_iter().map(by_itself).collect();
-        let rest = faces.iter().zip(&alone).filter(|(_, own)| own.is_none()).flat_map(|(face, _)| face);
-        let mut rest: Vec<usize> = rest.copied().collect();
-        rest.sort_unstable();
-        let whole = alone.iter().flatten().fold(of(&rest), |whole, own| whole.with(own));
-        if whole.rank > MAX_RANK { of(&every) } else { whole }
-    }
-
     /// w at a sample.
     pub(crate) fn at(&self, t: usize) -> &[f64] {
         &self.basis[t * self.rank..][..self.rank]
@@ -139,15 +113,12 @@ pub(super) fn felt_samples(series: &[&[f32]], most: usize) -> Vec<usize> {
 }
 
 /// c and w; `None` if nothing is felt.
-fn learn(roots: &Roots, rank: Option<usize>) -> Option<Fit> {
+fn learn(roots: &Roots) -> Option<Fit> {
     if roots.is_empty() {
         return None;
     }
     let start = roots.start();
     let most = start.max_rank();
-    if let Some(k) = rank {
-        return Some(roots.fit(&start, k.min(most), ITERATIONS));
-    }
     let with = |k: usize| {
         let fit = roots.fit(&start, k, ITERATIONS);
         (roots.total_residual(&fit), fit)
@@ -193,15 +164,11 @@ mod tests {
 
     #[test]
     fn a_motion_is_recovered_up_to_a_linear_map() {
-        for (k, signed) in [(2, false), (4, false), (6, false), (4, true)] {
+        for (k, signed) in [(2, false), (3, false), (4, true)] {
             let (w, series) = felt(k, 40, signed);
             let series: Vec<&[f32]> = series.iter().map(Vec::as_slice).collect();
-            let found = MotionSubspace::of_cluster(&series, Some(k), signed);
-            let error = unexplained(&w, &found);
+            let error = unexplained(&w, &MotionSubspace::of_cluster(&series, signed));
             assert!(error < 0.05, "k = {k}, signed {signed}: {error}");
-            // A lower rank is not the whole motion.
-            let lower = unexplained(&w, &MotionSubspace::of_cluster(&series, Some(k - 1), signed));
-            assert!(lower > error + 0.02, "k = {k}, signed {signed}: {lower}");
         }
     }
 
@@ -210,19 +177,19 @@ mod tests {
         for (k, signed) in [(2, false), (3, false), (4, true)] {
             let (_, series) = felt(k, 40, signed);
             let series: Vec<&[f32]> = series.iter().map(Vec::as_slice).collect();
-            assert_eq!(MotionSubspace::of_cluster(&series, None, signed).rank, k);
+            assert_eq!(MotionSubspace::of_cluster(&series, signed).rank, k);
         }
     }
 
     #[test]
     fn no_touch_is_no_motion() {
         let still = [0.0_f32; 50];
-        assert_eq!(MotionSubspace::of_cluster(&[&still, &still], None, false).rank, 0);
-        assert_eq!(MotionSubspace::of_cluster(&[], None, false).rank, 0);
+        assert_eq!(MotionSubspace::of_cluster(&[&still, &still], false).rank, 0);
+        assert_eq!(MotionSubspace::of_cluster(&[], false).rank, 0);
         // A single sensor that feels something at a single sample.
         let mut once = still;
         once[49] = 1.0;
-        let found = MotionSubspace::of_cluster(&[&once], None, false);
+        let found = MotionSubspace::of_cluster(&[&once], false);
         assert!(found.basis.iter().all(|value| value.is_finite()));
     }
 }

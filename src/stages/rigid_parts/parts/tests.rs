@@ -3,7 +3,6 @@
 use rand::RngExt;
 
 use super::super::fixtures::sensor_series;
-use super::super::stratified::stratified;
 use super::*;
 use crate::numerics::partition::adjusted_rand_index;
 use crate::numerics::rng::stream;
@@ -74,15 +73,9 @@ fn what_no_motion_explains_is_one_part() {
 #[test]
 fn the_union_of_two_parts_has_a_longer_description_than_both() {
     let (tactile, truth) = tactile();
-    let series: Vec<&[f32]> = tactile.series().collect();
-    let samples: Vec<usize> = stratified(tactile.samples, MAX_SAMPLES).collect();
-    let roots = Roots::at(&series, &samples, false);
-    let scales = roots.scales();
-    let roots = roots.scaled(&scales);
-    let sizes = roots.sizes();
-    let roots = roots.equalised(&sizes, 0.0);
-    let completed = Completion::new(&roots).velocities;
-    let felt = Felt { roots, completed, sizes, tolerance: 3e-4, iterations: ITERATIONS };
+    let every: Vec<usize> = (0..truth.len()).collect();
+    let mut felt = Prepared::new(&tactile, false, &every).search(&every).felt;
+    felt.tolerance = 3e-4;
     let own = |parts: &[usize]| {
         (0..truth.len()).filter(|sensor| parts.contains(&truth[*sensor])).collect::<Vec<_>>()
     };
