@@ -25,12 +25,16 @@ class Fit:
     explained : float
         The share of sensors that the motion of a part explains, 0 to 1. From 0.8 on the verdict is good, from 0.65 on doubtful. Below
         1,000 samples it is doubtful at best.
+    novelty : float
+        The share of what is felt at a sample that the most similar other state leaves, 0 to 1, the median over samples. Below 0.001 the
+        movement repeats itself, and the verdict is "does not fit".
     cause : str or None
         What is likely to be the matter, unless the verdict is good.
     """
 
     verdict: str
     explained: float
+    novelty: float
     cause: Optional[str]
 
     def __str__(self) -> str:
@@ -55,9 +59,12 @@ class Joints:
         Bootstrap support of each joint, 0 to 1, given the parts.
     pairs : ndarray of shape (K (K − 1) / 2, 2), int64
         All pairs of parts.
-    pair_correlation, pair_information, pair_support : ndarray of shape (K (K − 1) / 2,), float64
-        Canonical correlation of the speed of a joint between the two parts, 0 to 1; information of that joint, nats, of which the tree
-        has the most; and its bootstrap support, 0 to 1.
+    pair_correlation : ndarray of shape (K (K − 1) / 2,), float64
+        Canonical correlation of the speed of a joint between the two parts, 0 to 1.
+    pair_information : ndarray of shape (K (K − 1) / 2,), float64
+        Information of a joint between the two parts, in nats. Of all trees, the estimate has the largest sum.
+    pair_support : ndarray of shape (K (K − 1) / 2,), float64
+        Bootstrap support of that joint, 0 to 1, given the parts.
     dropped : dict of int to str
         Sensors that were left out, and why.
     """
@@ -293,7 +300,7 @@ def estimate(
     with progress_of(progress, 3, "estimate") as tell:
         facts = _bodyschema.estimate(array, said, seed, jobs, tell)
     verdict, sensors, all_sensors = facts["verdict"], facts["sensors"], array.shape[1]
-    fit = Fit(verdict, facts["explained"], facts["cause"])
+    fit = Fit(verdict, facts["explained"], facts["novelty"], facts["cause"])
     warn_of_cleaning(facts, all_sensors)
     shows_tree = force or facts["fits"]
     if not facts["fits"]:

@@ -129,6 +129,7 @@ pub(crate) fn estimate<'py>(
     facts.set_item("verdict", fit.verdict.to_string())?;
     facts.set_item("fits", fit.verdict != Verdict::DoesNotFit)?;
     facts.set_item("explained", fit.explained)?;
+    facts.set_item("novelty", fit.novelty)?;
     facts.set_item("cause", fit.cause)?;
     let (others, left): (Vec<i64>, Vec<f64>) = parts
         .alternatives

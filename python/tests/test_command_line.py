@@ -45,8 +45,8 @@ def test_estimate(folder, tmp_path, command, moved, kind):
         warnings.simplefilter("ignore", bodyschema.RecordingWarning)
         found = bodyschema.estimate(touch, random_state=SEED, force=True)
     summary = json.loads((tmp_path / "found/summary.json").read_text())
-    facts = [found.fit.verdict, found.fit.explained, len(found.samples), len(found.labels), found.noisy, found.signed, found.seed]
-    assert facts == [summary[name] for name in ["fit", "explained", "samples", "parts", "noisy", "signed", "seed"]]
+    facts = [found.fit.verdict, found.fit.explained, found.fit.novelty, len(found.samples), len(found.labels), found.noisy, found.signed, found.seed]
+    assert facts == [summary[name] for name in ["fit", "explained", "novelty", "samples", "parts", "noisy", "signed", "seed"]]
     rows = table(tmp_path / "found/parts.csv")
     own = rows["sensor"]
     assert np.flatnonzero(found.parts >= 0).tolist() == own.tolist()

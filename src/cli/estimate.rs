@@ -75,6 +75,7 @@ struct PartRow {
 struct Summary {
     fit: String,
     explained: f64,
+    novelty: f64,
     samples: usize,
     sensors: usize,
     dropped: usize,
@@ -217,6 +218,7 @@ fn write(
     let summary = Summary {
         fit: found.fit.verdict.to_string(),
         explained: found.fit.explained,
+        novelty: found.fit.novelty,
         samples: tactile.samples,
         sensors: sensors.len() + dropped.len(),
         dropped: dropped.len(),

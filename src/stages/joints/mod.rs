@@ -6,7 +6,7 @@
 //! A joint is a point of both of its parts, so that both feel its speed |v + ω × l|: v and ω are velocity and angular velocity
 //! of either part, and l is the place of the joint in its frame. However the joint bends, the two speeds are equal, and their
 //! squares are quadratic forms of the motion of either part. For each pair of parts, the correlation of the two best such forms
-//! says whether they share a joint, and the tree of most information is the estimate; nearly all of this is of these speeds. Parts that
+//! says whether they share a joint, and the tree of most information, mostly that of these speeds, is the estimate. Parts that
 //! are joined have motion subspaces that intersect (Yan and Pollefeys 2006, 2008). Here the frames rotate against each other, and
 //! only speeds agree.
 

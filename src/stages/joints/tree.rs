@@ -8,7 +8,7 @@ use rand::{Rng, RngExt};
 use rayon::prelude::*;
 
 use super::moments::{Dependence, Moments};
-use crate::stages::rigid_parts::{MotionSubspace, motions_of_parts};
+use crate::stages::rigid_parts::{MAX_RANK, MotionSubspace, motions_of_parts};
 use crate::stages::sense::Tactile;
 use crate::stages::tree::{Edge, prim};
 
@@ -102,7 +102,7 @@ impl Joints {
 /// input and state of `rng` give the same bytes, whatever the number of threads.
 ///
 /// # Panics
-/// If there is not one label for each sensor, `rank` is 0, or T is 0.
+/// If there is not one label for each sensor, `rank` is not 1 to 6, or T is 0.
 pub fn joints(
     tactile: &Tactile,
     signed: bool,
@@ -129,6 +129,7 @@ fn parts_and_motions(
     rank: Option<usize>,
 ) -> (Vec<usize>, Vec<MotionSubspace>) {
     assert_eq!(labels.len(), tactile.sensors(), "a part for each sensor");
+    assert!(rank.is_none_or(|rank| (1..=MAX_RANK).contains(&rank)), "a rank from 1 to {MAX_RANK}");
     motions_of_parts(tactile, signed, labels, rank).into_iter().unzip()
 }
 

@@ -20,7 +20,7 @@ use crate::numerics::partition::named_by_appearance;
 use crate::stages::sense::Tactile;
 
 /// Samples at which a sensor must feel something to be searched for: four for each of the six numbers of its c.
-const MIN_FELT: usize = 4 * MAX_RANK;
+pub(super) const MIN_FELT: usize = 4 * MAX_RANK;
 /// The part of each of M sensors, and how well its motion explains what the sensor feels.
 ///
 /// A residual is the share of the mean square of a sensor's roots that the motion of a part leaves unexplained: 0 if it explains

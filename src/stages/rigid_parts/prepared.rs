@@ -34,7 +34,7 @@ impl<'a> Prepared<'a> {
         let series: Vec<&[f32]> = tactile.series().collect();
         let floors = floors(&series);
         let searched: Vec<f64> = sensors.iter().map(|&sensor| floors[sensor]).collect();
-        let samples = telling_samples(&of(&series, sensors), &searched, MAX_SAMPLES);
+        let samples = telling_samples(&series_of(&series, sensors), &searched, MAX_SAMPLES);
         let roots = Roots::at(&series, &samples, signed);
         let scales = roots.scales();
         let floor = typical_floor(&floors, &scales);
@@ -60,7 +60,7 @@ impl<'a> Prepared<'a> {
     /// The motion at all T samples of a cluster that was found among these sensors.
     pub(super) fn motion(&self, cluster: &Cluster, sensors: &[usize]) -> MotionSubspace {
         let own: Vec<usize> = cluster.representatives.iter().map(|&sensor| sensors[sensor]).collect();
-        let series = of(&self.series, &own);
+        let series = series_of(&self.series, &own);
         let given = Loadings {
             values: cluster.whitened_loadings(),
             scales: Roots::at(&series, &self.samples, self.signed).scales(),
@@ -72,6 +72,6 @@ impl<'a> Prepared<'a> {
 }
 
 /// The series of these sensors.
-pub(super) fn of<'a>(series: &[&'a [f32]], sensors: &[usize]) -> Vec<&'a [f32]> {
+pub(super) fn series_of<'a>(series: &[&'a [f32]], sensors: &[usize]) -> Vec<&'a [f32]> {
     sensors.iter().map(|&sensor| series[sensor]).collect()
 }

@@ -23,7 +23,7 @@ pub(super) const ROTATION_RANK: usize = 3;
 pub(crate) struct MotionSubspace {
     /// k, at most six if it is that of one cluster of sensors; 0 if these feel nothing.
     pub rank: usize,
-    /// w, T × k, by sample, in √Pa; along the principal axes of what the sensors feel. NaN at a sample at which fewer than k sensors have
+    /// w, T × k, by sample; each component has a mean square of about 1. NaN at a sample at which fewer than k sensors have
     /// a value.
     pub basis: Vec<f64>,
 }
@@ -50,7 +50,11 @@ impl MotionSubspace {
         let Some(fit) = learn(&Roots::at(&series, &felt_samples(&series, MAX_SAMPLES), signed)) else {
             return Self { rank: 0, basis: Vec::new() };
         };
-        Self::from_orthonormal(&series, fit.loadings(), signed)
+        let loadings = fit.loadings();
+        let found = Self::from_roots(&series, loadings.ncols(), &|samples| {
+            Roots::at(&series, samples, signed).motion(loadings)
+        });
+        found.with_unit_size()
     }
 
     /// From given loadings c of sensors, and their series of T pressures, NaN where one is missing.
@@ -62,11 +66,20 @@ impl MotionSubspace {
         })
     }
 
-    /// From loadings c whose columns are orthonormal.
-    fn from_orthonormal(series: &[&[f32]], loadings: &Mat<f64>, signed: bool) -> Self {
-        Self::from_roots(series, loadings.ncols(), &|samples| {
-            Roots::at(series, samples, signed).motion(loadings)
-        })
+    /// In units in which each component has a mean square of 1, as [`Self::of_loadings`] gives it: so that motions of faces of any size,
+    /// and pressures in any unit, count alike.
+    fn with_unit_size(mut self) -> Self {
+        let k = self.rank;
+        let mut sums = vec![(0.0, 0_usize); k];
+        for w in self.basis.chunks(k).filter(|w| !w[0].is_nan()) {
+            sums.iter_mut().zip(w).for_each(|((sum, count), w)| (*sum, *count) = (*sum + w * w, *count + 1));
+        }
+        let size = |&(sum, count): &(f64, usize)| (sum / count.max(1) as f64).sqrt();
+        let sizes: Vec<f64> = sums.iter().map(size).collect();
+        for w in self.basis.chunks_mut(k) {
+            w.iter_mut().zip(&sizes).filter(|(_, size)| **size > 0.0).for_each(|(w, size)| *w /= size);
+        }
+        self
     }
 
     /// Of rank k, where `motion` gives w at some samples.
