@@ -56,7 +56,7 @@ const GOOD: f64 = 0.8;
 const DOUBTFUL: f64 = 0.65;
 /// Different values up to which a sensor has levels, such as on and off.
 const LEVELS: usize = 8;
-/// Samples below which a recording is short. About half of such recordings, of movements of people and animals, have a wrong tree
+/// Samples below which a recording is short. About a quarter of such recordings, of movements of people and animals, have a wrong tree
 /// although rigid motions explain what is felt (docs/own-data.md).
 const SHORT: usize = 1000;
 

@@ -109,7 +109,7 @@ fn stages_by_hand_repeat_the_experiment() {
 
     for (table, expected) in [
         ("joined/tree.csv", "child,parent,support"),
-        ("joined/edges.csv", "part,other,correlation,support,in_tree"),
+        ("joined/edges.csv", "part,other,correlation,information,support,in_tree"),
         ("body/labels.csv", "sensor,part"),
         ("body/tree.csv", "child,parent"),
         ("schema/samples.csv", "chain,parts,log_posterior,ari,eligible,tree_correct"),

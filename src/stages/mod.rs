@@ -19,7 +19,7 @@
 //! | [`usable`] | pressures → those of the sensors and samples that tell something |
 //! | [`noise`] | pressures → smoothed, with 0 where there is no touch |
 //! | [`rigid_parts`] | pressures → [`RigidParts`](rigid_parts::RigidParts): the part of each sensor, by motion subspaces |
-//! | [`joints`] | pressures, parts → [`Joints`](joints::Joints): a tree over parts, by joint speeds, and the support of its edges |
+//! | [`joints`] | pressures, parts → [`Joints`](joints::Joints): a tree over parts, by joint speeds and motions, and the support of its edges |
 //!
 //! Beside stage 6, [`baselines`] cluster the same body map; [`mixture`] holds what both build on, [`tree`] the trees.
 //! M is the number of sensors, T the number of samples, N the number of levels, d the number of dimensions.
