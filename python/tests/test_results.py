@@ -18,7 +18,8 @@ def test_three_lines_give_parts_and_tree(moved, tmp_path):
     lines = str(found).splitlines()
     assert lines[0].startswith("fit: good: rigid motions explain ")
     assert lines[1] == f"3 parts of {len(moved.parts)} sensors over 1000 samples"
-    assert any("─ 100 % ─ part" in line for line in lines) and len(lines) == 6
+    assert all(f"─ {100 * support:.0f} % ─ part" in str(found) for support in found.support) and len(lines) == 6
+    assert (found.support > 0.95).all(), found.support
     assert repr(found) == f"<Estimate: 3 parts of {len(moved.parts)} sensors, fit: good>"
 
 
