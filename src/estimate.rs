@@ -109,14 +109,15 @@ impl Fit {
         let count =
             own.filter(|(label, residual)| !parts.unassigned.contains(label) && **residual <= most).count();
         let explained = count as f64 / parts.labels.len() as f64;
+        let repeats = novelty < REPEATS;
         let verdict = match explained {
-            _ if novelty < REPEATS => Verdict::DoesNotFit,
+            _ if repeats => Verdict::DoesNotFit,
             share if share >= GOOD && recording.tactile.samples >= SHORT => Verdict::Good,
             share if share >= DOUBTFUL => Verdict::Doubtful,
             _ => Verdict::DoesNotFit,
         };
         let cause = (verdict != Verdict::Good)
-            .then(|| if novelty < REPEATS { REPETITION } else { cause(&recording.tactile, is_noisy) });
+            .then(|| if repeats { REPETITION } else { cause(&recording.tactile, is_noisy) });
         Self { verdict, explained, novelty, cause }
     }
 }

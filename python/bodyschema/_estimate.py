@@ -279,7 +279,8 @@ def estimate(
     -----
     Sensors are clustered by the motion subspaces of rigid parts, in the way of motion segmentation (Costeira and Kanade 1998). Parts
     are joined by the tree of most information between them (Chow and Liu 1968), above all of the speeds of joints; support is that of
-    Felsenstein's bootstrap (1985). docs/estimate.md has the theory and how often the result is right. This is an extension: it is not in the paper.
+    Felsenstein's bootstrap (1985). docs/estimate.md has the theory and how often the result is right. This is an extension: it is not
+    in the paper.
 
     Examples
     --------

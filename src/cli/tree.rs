@@ -21,7 +21,7 @@ use crate::stages::joints::{Joints, Pair, joints};
 use crate::stages::rigid_parts::MAX_RANK;
 use crate::stages::tree::Truth;
 
-/// Estimates how given parts are joined, from the speeds of their joints and their motions (docs/estimate.md).
+/// Estimates how given parts are joined, from their motions and the speeds of their joints (docs/estimate.md).
 #[derive(Args)]
 #[command(after_help = "Example:\n  bodyschema tree tactile.npy --parts parts.csv --out joined")]
 pub(super) struct Tree {

@@ -7,7 +7,7 @@ use faer::Mat;
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Par};
 
-use crate::stages::rigid_parts::stratified;
+use crate::stages::rigid_parts::{median, stratified};
 use crate::stages::sense::Tactile;
 
 /// Samples that are compared, spread over all.
@@ -30,9 +30,12 @@ pub(super) fn novelty(tactile: &Tactile, sensors: &[usize]) -> f64 {
     let samples: Vec<usize> = stratified(tactile.samples, MAX_SAMPLES).collect();
     let size = |&t: &usize| sensors.iter().map(|&sensor| root(sensor, t).powi(2)).sum::<f64>().sqrt();
     let sizes: Vec<f64> = samples.iter().map(size).collect();
-    let least = REST * median(sizes.clone()).unwrap_or(0.0);
+    let least = REST * median(sizes.clone());
     let moving: Vec<(usize, f64)> =
         samples.into_iter().zip(sizes).filter(|(_, size)| *size > least).collect();
+    if moving.is_empty() {
+        return 1.0;
+    }
     let states = Mat::from_fn(sensors.len(), moving.len(), |at, sample| {
         let (t, size) = moving[sample];
         root(sensors[at], t) / size
@@ -48,13 +51,7 @@ pub(super) fn novelty(tactile: &Tactile, sensors: &[usize]) -> f64 {
         let others = squares[..before].iter().chain(&squares[sample + after..]);
         1.0 - others.fold(0.0, |most, square| f64::max(most, *square))
     };
-    median((0..moving.len()).map(left).collect()).unwrap_or(1.0)
-}
-
-/// The upper median; `None` of none.
-fn median(mut values: Vec<f64>) -> Option<f64> {
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied()
+    median((0..moving.len()).map(left).collect())
 }
 
 #[cfg(test)]

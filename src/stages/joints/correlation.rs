@@ -23,18 +23,12 @@ pub(super) struct QuadraticForms {
 impl QuadraticForms {
     /// From the moments of these monomials; `None` if the part feels nothing.
     pub(super) fn new(pairs: Vec<(usize, usize)>, mut moments: DMatrix<f64>) -> Option<Self> {
-        let n = moments.nrows();
-        if n == 0 {
-            return None;
-        }
         let rank = pairs.iter().map(|pair| pair.1 + 1).max().unwrap_or(0);
         let mut scales = vec![0.0; rank];
         for (at, (i, _)) in pairs.iter().enumerate().filter(|(_, (i, j))| i == j) {
             scales[*i] = moments[(at, at)].max(0.0).sqrt().sqrt();
         }
-        let ridge = RIDGE * moments.trace() / n as f64;
-        (0..n).for_each(|at| moments[(at, at)] += ridge);
-        let factor = moments.clone().cholesky()?.unpack();
+        let factor = factor_with_ridge(&mut moments, RIDGE)?;
         Some(Self { pairs, scales, moments, factor })
     }
 
@@ -89,8 +83,7 @@ pub(super) fn correlation(
     products: &DMatrix<f64>,
 ) -> f64 {
     let (Some(first), Some(second)) = (first, second) else { return 0.0 };
-    let half = first.factor.solve_lower_triangular(products).expect("a factor is regular");
-    let whole = second.factor.solve_lower_triangular(&half.transpose()).expect("a factor is regular");
+    let whole = whitened(&first.factor, &second.factor, products);
     let svd = whole.svd(true, true);
     let (Some(u), Some(v)) = (&svd.u, &svd.v_t) else { return 0.0 };
     let at = svd.singular_values.imax();
@@ -112,4 +105,19 @@ pub(super) fn correlation(
         (a, b) = (first.regressed(&with_other), second.regressed(&products.tr_mul(&own)));
     }
     best.clamp(0.0, 1.0)
+}
+
+/// Adds a share of the mean of the diagonal to it. Out: the lower Cholesky factor; `None` if that is singular, or there is nothing.
+pub(super) fn factor_with_ridge(moments: &mut DMatrix<f64>, share: f64) -> Option<DMatrix<f64>> {
+    let n = moments.nrows();
+    let ridge = share * moments.trace() / n.max(1) as f64;
+    (0..n).for_each(|at| moments[(at, at)] += ridge);
+    if n == 0 { None } else { Some(moments.clone().cholesky()?.unpack()) }
+}
+
+/// Products of two variables, first × second, in units in which the moments of each are the identity: second × first. In: the Cholesky
+/// factors of these moments.
+pub(super) fn whitened(first: &DMatrix<f64>, second: &DMatrix<f64>, products: &DMatrix<f64>) -> DMatrix<f64> {
+    let half = first.solve_lower_triangular(products).expect("a factor is regular");
+    second.solve_lower_triangular(&half.transpose()).expect("a factor is regular")
 }

@@ -6,7 +6,9 @@
 //! each other. Where they are coordinated, as in a walk, opposite limbs share more than neighbours do; only speeds tell the truth
 //! then. So the linear share counts little: it decides where samples are few, and quadratic forms of any two parts may agree.
 
-use nalgebra::{Cholesky, DMatrix, Dyn};
+use nalgebra::DMatrix;
+
+use super::correlation::{factor_with_ridge, whitened};
 
 /// Unexplained share of a joint's squared speed below which a joint tells hardly any more.
 const NEGLIGIBLE: f64 = 1e-3;
@@ -27,17 +29,14 @@ pub(super) fn of_joint(correlation: f64, mutual: f64) -> f64 {
 
 /// The motion of a part as a Gaussian variable about 0.
 pub(super) struct Gaussian {
-    /// The Cholesky factor of its moments, with a ridge.
-    factor: Cholesky<f64, Dyn>,
+    /// The lower Cholesky factor of its moments, with a ridge.
+    factor: DMatrix<f64>,
 }
 
 impl Gaussian {
     /// From sums over samples of the products of its components, k × k; `None` if the part feels nothing.
     pub(super) fn new(mut moments: DMatrix<f64>) -> Option<Self> {
-        let k = moments.nrows();
-        let ridge = RIDGE * moments.trace() / k.max(1) as f64;
-        (0..k).for_each(|at| moments[(at, at)] += ridge);
-        let factor = (k > 0).then(|| moments.cholesky()).flatten()?;
+        let factor = factor_with_ridge(&mut moments, RIDGE)?;
         Some(Self { factor })
     }
 }
@@ -50,8 +49,7 @@ pub(super) fn mutual_information(
     products: &DMatrix<f64>,
 ) -> f64 {
     let (Some(first), Some(second)) = (first, second) else { return 0.0 };
-    let half = first.factor.l_dirty().solve_lower_triangular(products).expect("a factor is regular");
-    let r = second.factor.l_dirty().solve_lower_triangular(&half.transpose()).expect("a factor is regular");
+    let r = whitened(&first.factor, &second.factor, products);
     let left = DMatrix::identity(r.ncols(), r.ncols()) - r.transpose() * &r;
     left.cholesky().map_or(0.0, |left| -left.l_dirty().diagonal().iter().map(|own| own.ln()).sum::<f64>())
 }

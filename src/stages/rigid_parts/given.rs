@@ -73,14 +73,17 @@ pub(crate) fn motions_of_parts(
 
 /// The sensors of each part that feel enough; if none does, those that feel anything.
 fn members(series: &[&[f32]], labels: &[Option<usize>]) -> BTreeMap<usize, Vec<usize>> {
-    let felt = |sensor: &usize| series[*sensor].iter().filter(|pressure| pressure.abs() > 0.0).count();
+    let felt: Vec<usize> =
+        series.par_iter().map(|own| own.iter().filter(|pressure| pressure.abs() > 0.0).count()).collect();
     let mut parts: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
     for (sensor, label) in labels.iter().enumerate() {
-        label.iter().for_each(|label| parts.entry(*label).or_default().push(sensor));
+        if let Some(label) = label {
+            parts.entry(*label).or_default().push(sensor);
+        }
     }
     for own in parts.values_mut() {
-        let least = if own.iter().any(|sensor| felt(sensor) >= MIN_FELT) { MIN_FELT } else { 1 };
-        own.retain(|sensor| felt(sensor) >= least);
+        let least = if own.iter().any(|&sensor| felt[sensor] >= MIN_FELT) { MIN_FELT } else { 1 };
+        own.retain(|&sensor| felt[sensor] >= least);
     }
     parts
 }
@@ -128,10 +131,9 @@ impl Faces {
 
 #[cfg(test)]
 mod tests {
-    use nalgebra::DMatrix;
     use rand::RngExt;
 
-    use super::super::fixtures::sensor_series;
+    use super::super::fixtures::{self, sensor_series};
     use super::*;
     use crate::numerics::rng::stream;
 
@@ -157,12 +159,8 @@ mod tests {
         (motions, Tactile { samples: SAMPLES, pressures }, labels)
     }
 
-    /// The share of the true motion's squares that no linear map of the found one explains.
     fn unexplained(w: &[f64], found: &MotionSubspace) -> f64 {
-        let w = DMatrix::from_row_slice(SAMPLES, w.len() / SAMPLES, w);
-        let x = DMatrix::from_row_slice(SAMPLES, found.rank, &found.basis);
-        let fitted = &x * x.clone().svd(true, true).solve(&w, 1e-12).unwrap();
-        (&w - fitted).norm_squared() / w.norm_squared()
+        fixtures::unexplained(w, (&found.basis, found.rank))
     }
 
     #[test]

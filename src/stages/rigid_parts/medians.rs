@@ -1,7 +1,7 @@
 //! Say what is typical by the median, which outliers do not change.
 
 /// The median, of an even number the upper one; 0 of none.
-pub(super) fn median(mut values: Vec<f64>) -> f64 {
+pub(crate) fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
     values.get(values.len() / 2).copied().unwrap_or(0.0)
 }

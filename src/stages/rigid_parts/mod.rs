@@ -43,7 +43,7 @@ pub(crate) use self::als::Als;
 pub(crate) use self::faces::{opposite_pairs, similar};
 pub(crate) use self::factorisation::MAX_RANK;
 pub(crate) use self::given::motions_of_parts;
-pub(crate) use self::medians::typical_size;
+pub(crate) use self::medians::{median, typical_size};
 pub use self::parts::{RigidParts, rigid_parts};
 pub(crate) use self::roots::{Roots, is_signed};
 pub use self::search::MIN_SENSORS;
