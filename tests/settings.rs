@@ -37,7 +37,7 @@ enum Range {
 
 use Range::{Flag, Numbers, Probabilities, Real, Whole, Word};
 
-const SETTINGS: [(&str, Range); 69] = [
+const SETTINGS: [(&str, Range); 70] = [
     ("agent.morphology", Word(&["chain", "star", "tee", "y"])),
     ("agent.part_length", Real(1e-3, 1e3)),
     ("agent.part_radius", Real(1e-3, 5.0)),
@@ -59,6 +59,7 @@ const SETTINGS: [(&str, Range); 69] = [
     ("motion.rhythm.frequency", Real(1e-4, 10.0)),
     ("motion.rhythm.frequency_spread", Real(0.0, 1.0)),
     ("motion.rhythm.frequency_time", Real(1e-6, 1e6)),
+    ("motion.rhythm.gait_time", Real(0.0, 1e6)),
     ("motion.rhythm.least_amplitude", Real(0.0, 0.75)),
     ("motion.rhythm.largest_amplitude", Real(0.25, PI)),
     ("motion.rhythm.phase_lag", Real(-PI, PI)),
@@ -342,9 +343,9 @@ fn random_settings(rng: &mut Stream) -> String {
     if rng.random_bool(0.5) {
         values.retain(|(key, _)| !["motion.stiffness", "motion.damping"].contains(key));
     }
-    // Most steps are too long for a rhythm.
+    // Most steps are too long for a rhythm, whose settings do not count without one.
     if rng.random_bool(0.75) {
-        values.retain(|(key, _)| *key != "motion.movement");
+        values.retain(|(key, _)| *key != "motion.movement" && !key.starts_with("motion.rhythm."));
     }
     toml(&values)
 }

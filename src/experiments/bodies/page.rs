@@ -29,14 +29,14 @@ const METHODS: [(&str, Right); 7] = [
     ("tree", |row| row.tree_right),
     ("tree of true parts", |row| row.tree_of_true_parts_right),
     ("nearest sensors", |row| row.nearest_right),
-    ("Chow–Liu", |row| row.chow_liu_right),
+    ("information of sensors", |row| row.chow_liu_right),
     ("DPGMM-LJ", |row| row.dpgmm_lj_right),
     ("DPGMM + Prim", |row| row.dpgmm_prim_right),
 ];
 
 /// The same over the narrow panels of the picture, in which DPGMM stands over both of its own.
 const TITLES: [&str; METHODS.len()] =
-    ["parts", "tree", "true\nparts", "nearest", "Chow–\nLiu", "DPGMM\n-LJ", "\n+ Prim"];
+    ["parts", "tree", "true\nparts", "nearest", "infor-\nmation", "DPGMM\n-LJ", "\n+ Prim"];
 
 /// The picture, in the folder of the study.
 pub(super) const PICTURE: &str = "figures/bodies.svg";
@@ -93,8 +93,8 @@ impl Page<'_> {
         about(design, rows),
         "\n## How often is it right?\n".to_owned(),
         "Parts are right if each estimated part is one true part by most of its sensors, and the other way round. A \
-         tree is right if its parts are right and all its edges are. The trees of nearest sensors and of Chow and Liu \
-         are over the same estimated parts. DPGMM-LJ and DPGMM + Prim: the posterior sample of highest log posterior \
+         tree is right if its parts are right and all its edges are. Two rival trees over the same estimated \
+         parts join the nearest sensors, and the parts whose sensors have the most mutual information on average (Chow and Liu 1968). DPGMM-LJ and DPGMM + Prim: the posterior sample of highest log posterior \
          of all chains, on a body map of 14 dimensions; [estimate.md](../../estimate.md#accuracy) says why they \
          recover fewer trees here than in the experiments. In brackets: 95 % intervals (Wilson), as if all simulations \
          were alike. They differ by body, as the next table shows.\n"

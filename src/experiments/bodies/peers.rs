@@ -12,8 +12,8 @@ use crate::stages::tree::{Edge, prim};
 /// Dimensions of the body map of the mixtures: those of the paper's headline.
 const DIMENSIONS: usize = 14;
 
-/// Two trees over given parts: of the nearest sensors, and of Chow and Liu (1968), the tree of most information between parts,
-/// which is the mean between their sensors.
+/// Two trees over given parts: of the nearest sensors, and of most information between parts (Chow and Liu 1968), which is
+/// the mean of the mutual information of their sensors. `estimate` takes that of joint speeds and motions instead.
 pub(super) fn trees(labels: &[usize], distances: &Distances, symbols: &Symbols) -> [Vec<Edge>; 2] {
     let parts = labels.iter().max().map_or(0, |last| last + 1);
     let entropies: Vec<f64> = symbols.series().map(|series| entropy(series, symbols.levels)).collect();

@@ -121,6 +121,8 @@ pub struct Rhythm {
     pub frequency_spread: f64,
     /// Time, s, over which a deviation of ln(f / f₀) falls to 1/e of itself on average. Longer is slower.
     pub frequency_time: f64,
+    /// Time, s, in which amplitudes and lags go from one random gait to the next; with 0 the first gait never changes.
+    pub gait_time: f64,
     /// Least amplitude of an axis, rad; amplitudes are uniform from it to the largest.
     pub least_amplitude: f64,
     /// Largest amplitude of an axis, rad.
@@ -143,6 +145,7 @@ impl Rhythm {
         within("motion.rhythm.frequency", self.frequency, (1e-4, 10.0), "0.0001 to 10 (Hz)")?;
         within("motion.rhythm.frequency_spread", self.frequency_spread, (0.0, 1.0), "0 to 1")?;
         moderate("motion.rhythm.frequency_time", self.frequency_time)?;
+        within("motion.rhythm.gait_time", self.gait_time, (0.0, 1e6), "0 to 1000000 (s)")?;
         let largest = self.largest_amplitude;
         within("motion.rhythm.largest_amplitude", largest, (0.0, PI), "0 to pi (rad)")?;
         let range = "0 to motion.rhythm.largest_amplitude (rad)";

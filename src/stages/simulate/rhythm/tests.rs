@@ -5,6 +5,7 @@ const RHYTHM: Rhythm = Rhythm {
     frequency: 0.2,
     frequency_spread: 0.3,
     frequency_time: 100.0,
+    gait_time: 0.0,
     least_amplitude: 0.25,
     largest_amplitude: 0.75,
     phase_lag: 1.0,
@@ -16,7 +17,7 @@ fn joint(parent: usize, child: usize, freedom: Freedom) -> Joint {
 }
 
 fn drawn(joints: &[Joint], targets: Targets, rhythm: &Rhythm, seed: u64) -> Vec<Axes> {
-    Oscillators::new(joints, rhythm, targets, (500, 0.01), &mut stream(seed, 1, "motion", 0)).axes
+    Oscillators::new(joints, rhythm, targets, (500, 0.01), &mut stream(seed, 1, "motion", 0)).gaits[0].clone()
 }
 
 #[test]
@@ -86,7 +87,7 @@ fn the_target_is_a_sinusoid_of_the_frequency() {
     let joints = [joint(0, 1, Freedom::Hinge([1.0, 0.0, 0.0]))];
     let rng = &mut stream(1, 1, "motion", 0);
     let mut own = Oscillators::new(&joints, &rhythm, Targets::Each, (500, 0.01), rng);
-    let Axes { amplitudes: [amplitude, ..], lags: [lag, ..] } = own.axes[0];
+    let Axes { amplitudes: [amplitude, ..], lags: [lag, ..] } = own.gaits[0][0];
     for step in 1..=100_000 {
         if step % 500 == 0 {
             own.begin_epoch(rng);
@@ -95,4 +96,43 @@ fn the_target_is_a_sinusoid_of_the_frequency() {
         let right = amplitude * (TAU * 0.2 * f64::from(step) * 0.01 - lag).sin();
         assert!((own.target(0)[0] - right).abs() < 1e-9, "{step}");
     }
+}
+
+#[test]
+fn amplitudes_and_lags_go_smoothly_from_gait_to_gait() {
+    // Four epochs of 5 s lead from one gait to the next.
+    let rhythm = Rhythm { gait_time: 20.0, ..RHYTHM };
+    let joints = [joint(0, 1, Freedom::Hinge([1.0, 0.0, 0.0]))];
+    let rng = &mut stream(1, 1, "motion", 0);
+    let mut own = Oscillators::new(&joints, &rhythm, Targets::Each, (500, 0.01), rng);
+    let of = |gait: &Gait| (gait[0].amplitudes[0], gait[0].lags[0]);
+    let mut reached = vec![of(&own.gaits[0])];
+    let mut last = own.target(0)[0];
+    for step in 1..=20_000 {
+        own.advance();
+        let (phase, [from, to]) = (own.phase, own.gaits.clone().map(|gait| of(&gait)));
+        let share = f64::from((step - 1) % 2000 + 1) / 2000.0;
+        let (amplitude, lag) = (from.0 + share * (to.0 - from.0), from.1 + share * (to.1 - from.1));
+        let target = own.target(0)[0];
+        assert!((target - amplitude * (phase - lag).sin()).abs() < 1e-9, "{step}");
+        // At most an amplitude of 0.75 at some 0.6 Hz, with lags that change by less than 2π in 20 s.
+        assert!((target - last).abs() < 0.75 * (TAU * 0.6 + TAU / 20.0) * 0.01 + 0.001, "{step}");
+        last = target;
+        if step % 500 == 0 {
+            own.begin_epoch(rng);
+        }
+        if step % 2000 == 0 {
+            assert_eq!(of(&own.gaits[0]), to, "the gait that was reached");
+            reached.push(to);
+        }
+    }
+    let amplitudes: Vec<f64> = reached.iter().map(|gait| gait.0).collect();
+    assert_eq!(reached.len(), 11);
+    assert!(amplitudes.iter().all(|amplitude| (0.25..=0.75).contains(amplitude)));
+    assert!(amplitudes.windows(2).all(|pair| (pair[0] - pair[1]).abs() > 1e-3), "{amplitudes:?}");
+    // With 0 the gait never changes, and nothing more is drawn.
+    let mut steady = Oscillators::new(&joints, &RHYTHM, Targets::Each, (500, 0.01), rng);
+    let before = of(&steady.gaits[0]);
+    (0..10).for_each(|_| steady.begin_epoch(rng));
+    assert_eq!(steady.gaits.map(|gait| of(&gait)), [before; 2]);
 }
