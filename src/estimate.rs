@@ -60,8 +60,8 @@ const LEVELS: usize = 8;
 /// although rigid motions explain what is felt (docs/own-data.md).
 const SHORT: usize = 1000;
 
-/// Novelty below which a movement repeats itself. Movements in one rhythm had 0.0001, and recorded walks at least 0.003
-/// (docs/estimate.md).
+/// Novelty below which a movement repeats itself. Movements in one rhythm had 0.0002 at most, and recorded ones that are no loop at
+/// least 0.003 (docs/estimate.md).
 const REPEATS: f64 = 1e-3;
 
 /// Whether rigid parts explain what sensors felt.
@@ -101,15 +101,14 @@ pub struct Fit {
 }
 
 impl Fit {
-    /// Of parts before joints assign the sensors that no part explains.
-    fn new(parts: &RigidParts, recording: &Recording, novelty: f64) -> Self {
+    /// Of parts before joints assign the sensors that no part explains. `repeats`: whether few motions come again and again.
+    fn new(parts: &RigidParts, recording: &Recording, novelty: f64, repeats: bool) -> Self {
         let is_noisy = 2 * recording.noisy > recording.sensors.len();
         let most = EXPLAINED[usize::from(is_noisy)];
         let own = parts.labels.iter().zip(&parts.residuals);
         let count =
             own.filter(|(label, residual)| !parts.unassigned.contains(label) && **residual <= most).count();
         let explained = count as f64 / parts.labels.len() as f64;
-        let repeats = novelty < REPEATS;
         let verdict = match explained {
             _ if repeats => Verdict::DoesNotFit,
             share if share >= GOOD && recording.tactile.samples >= SHORT => Verdict::Good,
@@ -176,7 +175,9 @@ pub fn estimate(
     let (sensors, distances) = distances(tactile, *signed, levels);
     tick();
     let parts = rigid_parts(tactile, *signed, &sensors);
-    let fit = Fit::new(&parts, recording, novelty::novelty(tactile, &sensors));
+    let novelty = novelty::novelty(tactile, &sensors);
+    let repeats = novelty < REPEATS && novelty::has_few_motions(tactile, &sensors);
+    let fit = Fit::new(&parts, recording, novelty, repeats);
     tick();
     let (parts, joints) = refine(tactile, *signed, parts, rng);
     tick();
@@ -212,9 +213,14 @@ fn cause(tactile: &Tactile, is_noisy: bool) -> &'static str {
 
 /// Some sensors, spread over all and rising, and their distances. `signed`: whether negative pressures are signal.
 pub fn distances(tactile: &Tactile, signed: bool, levels: &Quantise) -> (Vec<usize>, Distances) {
-    let sensors: Vec<usize> = stratified(tactile.sensors(), MAX_SENSORS).collect();
+    let sensors = searched(tactile);
     let distances = information_metric(&quantise(&excerpt(tactile, signed, &sensors), levels));
     (sensors, distances)
+}
+
+/// The sensors that parts are searched for among, rising and spread over all.
+fn searched(tactile: &Tactile) -> Vec<usize> {
+    stratified(tactile.sensors(), MAX_SENSORS).collect()
 }
 
 /// Pressures of some sensors at some samples, made positive in the same order: each sensor's minus its smallest negative one. Where
@@ -253,7 +259,7 @@ mod tests {
                 unassigned: Vec::new(),
                 motions: BTreeMap::new(),
             };
-            Fit::new(&parts, &recording, novelty)
+            Fit::new(&parts, &recording, novelty, novelty < REPEATS)
         };
         assert_eq!(fit(SHORT, 0.1).verdict, Verdict::Good);
         assert_eq!(

@@ -27,7 +27,7 @@ class Fit:
         1,000 samples it is doubtful at best.
     novelty : float
         The share of what is felt at a sample that the most similar other state leaves, 0 to 1, the median over samples. Below 0.001 the
-        movement repeats itself, and the verdict is "does not fit".
+        movement repeats itself; if it also consists of few motions, as one rhythm does, the verdict is "does not fit".
     cause : str or None
         What is likely to be the matter, unless the verdict is good.
     """

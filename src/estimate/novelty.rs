@@ -1,12 +1,14 @@
-//! Measure whether a movement goes on to new states, or repeats itself.
+//! Measure whether a movement goes on to new states, or repeats itself, and of how many motions it consists.
 //!
 //! Where all joints keep step in one rhythm, each part's motion is a curve that is passed again and again, and the motions of all parts
-//! span nearly the same functions of its phase. A model of rigid parts then fits well, and says nothing.
+//! span nearly the same few functions of its phase. A model of rigid parts then fits well, and says nothing. A loop of a walk repeats
+//! itself, too, but of so many motions that parts can be told.
 
 use faer::Mat;
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Par};
 
+use crate::numerics::eigen::largest;
 use crate::stages::rigid_parts::{median, stratified};
 use crate::stages::sense::Tactile;
 
@@ -16,29 +18,27 @@ const MAX_SAMPLES: usize = 1500;
 const REST: f64 = 0.1;
 /// Squared cosine from which on samples next to each other are of one state.
 const SAME: f64 = 0.5;
+/// A movement consists of few motions if so many principal components explain this share of what sensors feel, each in units of its own.
+/// In one rhythm, 15 components did so at most (15 bodies of 3 to 13 parts), and in a walk that was looped 55.
+const FEW: usize = 30;
+const EXPLAINED: f64 = 0.99;
 
 /// The median, over samples, of the share of what is felt that the most similar sample leaves: 0 if every state comes again exactly, and 1
 /// if none is like another. Samples just before and after, which are of the same state, do not count; speed does not count, either.
 ///
 /// In: M × T pressures, and some of the sensors. 1 if nothing moves.
 pub(super) fn novelty(tactile: &Tactile, sensors: &[usize]) -> f64 {
-    let series: Vec<&[f32]> = tactile.series().collect();
-    let root = |sensor: usize, t: usize| {
-        let pressure = f64::from(series[sensor][t]);
-        if pressure.is_nan() { 0.0 } else { pressure.signum() * pressure.abs().sqrt() }
-    };
-    let samples: Vec<usize> = stratified(tactile.samples, MAX_SAMPLES).collect();
-    let size = |&t: &usize| sensors.iter().map(|&sensor| root(sensor, t).powi(2)).sum::<f64>().sqrt();
-    let sizes: Vec<f64> = samples.iter().map(size).collect();
+    let roots = roots(tactile, sensors);
+    let size = |t: usize| roots.col(t).norm_l2();
+    let sizes: Vec<f64> = (0..roots.ncols()).map(size).collect();
     let least = REST * median(sizes.clone());
-    let moving: Vec<(usize, f64)> =
-        samples.into_iter().zip(sizes).filter(|(_, size)| *size > least).collect();
+    let moving: Vec<(usize, f64)> = sizes.into_iter().enumerate().filter(|(_, size)| *size > least).collect();
     if moving.is_empty() {
         return 1.0;
     }
     let states = Mat::from_fn(sensors.len(), moving.len(), |at, sample| {
         let (t, size) = moving[sample];
-        root(sensors[at], t) / size
+        roots[(at, t)] / size
     });
     let mut cosines = Mat::zeros(moving.len(), moving.len());
     matmul(cosines.as_mut(), Accum::Replace, states.transpose(), states.as_ref(), 1.0, Par::Seq);
@@ -54,17 +54,43 @@ pub(super) fn novelty(tactile: &Tactile, sensors: &[usize]) -> f64 {
     median((0..moving.len()).map(left).collect())
 }
 
+/// Whether few motions explain nearly all of what some sensors feel. In: M × T pressures, and the sensors.
+pub(super) fn has_few_motions(tactile: &Tactile, sensors: &[usize]) -> bool {
+    let mut roots = roots(tactile, sensors);
+    for mut row in roots.row_iter_mut() {
+        let size = row.norm_l2().max(f64::MIN_POSITIVE);
+        row.iter_mut().for_each(|root| *root /= size);
+    }
+    let mut products = Mat::zeros(sensors.len(), sensors.len());
+    matmul(products.as_mut(), Accum::Replace, roots.as_ref(), roots.transpose(), 1.0, Par::Seq);
+    let all: f64 = (0..sensors.len()).map(|at| products[(at, at)]).sum();
+    let first = largest(products.as_ref(), FEW.min(sensors.len()));
+    first.is_ok_and(|first| first.values.iter().sum::<f64>() >= EXPLAINED * all)
+}
+
+/// Roots of the pressures on some sensors at some samples, sensors × samples, with 0 where one is missing.
+fn roots(tactile: &Tactile, sensors: &[usize]) -> Mat<f64> {
+    let series: Vec<&[f32]> = tactile.series().collect();
+    let samples: Vec<usize> = stratified(tactile.samples, MAX_SAMPLES).collect();
+    Mat::from_fn(sensors.len(), samples.len(), |at, sample| {
+        let pressure = f64::from(series[sensors[at]][samples[sample]]);
+        if pressure.is_nan() { 0.0 } else { pressure.signum() * pressure.abs().sqrt() }
+    })
+}
+
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::TAU;
+
     use rand::RngExt;
 
     use super::*;
     use crate::numerics::rng::stream;
 
-    /// What 30 sensors feel while their velocities are these functions of time, plus noise of this size.
+    /// What 60 sensors feel while their velocities are these functions of time, plus noise of this size.
     fn felt(noise: f64, velocity: impl Fn(usize, f64) -> f64) -> Tactile {
         let mut rng = stream(1, 1, "novelty", 0);
-        let pressures = (0..30).flat_map(|sensor| {
+        let pressures = (0..60).flat_map(|sensor| {
             (0..2000)
                 .map(|t| velocity(sensor, t as f64 / 10.0) + noise * rng.random_range(-1.0..1.0))
                 .collect::<Vec<f64>>()
@@ -73,7 +99,7 @@ mod tests {
     }
 
     fn of(tactile: &Tactile) -> f64 {
-        novelty(tactile, &(0..30).collect::<Vec<usize>>())
+        novelty(tactile, &(0..60).collect::<Vec<usize>>())
     }
 
     #[test]
@@ -91,6 +117,19 @@ mod tests {
         });
         let noisy = felt(0.2, |sensor, t| (t - sensor as f64).sin());
         assert!(of(&several) > 0.03 && of(&noisy) > 5e-3, "{} {}", of(&several), of(&noisy));
+    }
+
+    #[test]
+    fn a_loop_may_consist_of_many_motions() {
+        // Every ten seconds the same: at one frequency, and at thirty of random phases.
+        let one = felt(0.0, |sensor, t| (TAU * t / 10.0 - sensor as f64).sin());
+        let phase = |sensor: usize, own: usize| ((1 + own * own) * (3 + sensor)) as f64;
+        let rich = felt(0.0, |sensor, t| {
+            (1..30).map(|own| (TAU * own as f64 * t / 10.0 - phase(sensor, own)).sin()).sum()
+        });
+        let few = |tactile: &Tactile| has_few_motions(tactile, &(0..60).collect::<Vec<usize>>());
+        assert!(of(&one) < 1e-3 && of(&rich) < 1e-3, "{} {}", of(&one), of(&rich));
+        assert!(few(&one) && !few(&rich));
     }
 
     #[test]
