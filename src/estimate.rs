@@ -32,11 +32,13 @@
 //! ```
 
 mod novelty;
+mod repeats;
 
 use std::fmt;
 
 use rand::Rng;
 
+pub use self::repeats::{Repeats, repeats};
 use crate::recording::Recording;
 use crate::stages::distance::{Distances, information_metric};
 use crate::stages::joints::{Joints, refine};

@@ -46,7 +46,8 @@ fn one_command_finds_parts_and_tree() {
     folder.write("moving.toml", small(&format!("{LONGER}motion.coordination = 0.5")));
     folder.succeed("simulate --settings moving.toml --out body");
     with_faults(&folder, "body/tactile.npy", "own.npy");
-    let said = folder.run("estimate own.npy --labels body/labels.csv --tree body/tree.csv --out found");
+    let said =
+        folder.run("estimate own.npy --labels body/labels.csv --tree body/tree.csv --repeats 2 --out found");
     assert_eq!(said.status, Some(0), "{said:?}");
     assert!(said.out.starts_with("fit: good: rigid motions explain "), "{said:?}");
     assert!(said.out.contains("5 parts of 117 sensors"), "{said:?}");
@@ -56,7 +57,14 @@ fn one_command_finds_parts_and_tree() {
     let faults: Vec<String> =
         folder.rows("found/dropped.csv").iter().map(|row| row["fault"].clone()).collect();
     assert_eq!(faults, ["dead", "constant", "missing"]);
-    assert_eq!(folder.rows("found/parts.csv").len(), 117);
+    assert!(said.out.contains("estimated again 2 times from resampled times"), "{said:?}");
+    let parts = folder.rows("found/parts.csv");
+    assert_eq!(parts.len(), 117);
+    // Most sensors are found again on their parts, and all parts with their joints.
+    assert!(parts.iter().filter(|row| row["repeated"] == "1.0").count() > 100);
+    let repeats = folder.rows("found/repeats.csv");
+    assert_eq!(repeats.iter().filter(|row| row["joined_to"].is_empty()).count(), 5);
+    assert!(repeats.len() == 9 && repeats.iter().all(|row| row["repeated"] == "1.0"), "{repeats:?}");
     assert_eq!(folder.rows("found/tree.csv").len(), 4);
     assert_eq!(folder.text("found/tree.dot").matches(" -- ").count(), 4);
     assert_eq!(folder.text("found/tree.graphml").matches("<edge ").count(), 4);
@@ -91,6 +99,7 @@ fn one_command_finds_parts_and_tree() {
     assert!(said.out.contains("does not fit") && said.out.contains("contact pads"), "{said:?}");
     assert!(folder.text("found/summary.json").contains("\"fit\": \"does not fit\""));
     assert!(!folder.at("found/tree.csv").exists() && !folder.at("found/report.html").exists());
+    assert!(!folder.at("found/repeats.csv").exists());
     assert!(folder.at("found/parts.csv").exists());
 }
 

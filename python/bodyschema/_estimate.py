@@ -96,7 +96,7 @@ class Joints:
         -------
         networkx.Graph
             A node for each part, with `rank`, and of an `Estimate` with `sensors` (list of int) and `residual` (median); an edge
-            for each joint, with `support` and `correlation`.
+            for each joint, with `support`, `correlation` and `information`.
 
         Raises
         ------
@@ -109,9 +109,11 @@ class Joints:
             raise ImportError("to_networkx needs networkx: pip install networkx") from None
         graph = networkx.Graph()
         graph.add_nodes_from(self._nodes().items())
-        correlations = {frozenset(pair): c for pair, c in zip(self.pairs.tolist(), self.pair_correlation.tolist())}
+        places = {frozenset(pair): at for at, pair in enumerate(self.pairs.tolist())}
         for (child, parent), support in zip(self.tree.tolist(), self.support.tolist()):
-            graph.add_edge(child, parent, support=support, correlation=correlations[frozenset((child, parent))])
+            at = places[frozenset((child, parent))]
+            correlation, information = float(self.pair_correlation[at]), float(self.pair_information[at])
+            graph.add_edge(child, parent, support=support, correlation=correlation, information=information)
         return graph
 
 
@@ -146,6 +148,14 @@ class Estimate(Joints):
         Time between two samples, s.
     seed : int
         Seed of the bootstrap.
+    repeats : int
+        How many times parts and tree were estimated again, from resampled times.
+    repeated : ndarray of shape (M,), float64, or None
+        The share of these repeats in which a sensor is on the same part, 0 to 1; NaN for one that was left out. None without repeats.
+    repeated_parts : ndarray of shape (K,), float64, or None
+        The share of repeats that have a part: one of their parts has more than half of all sensors of both.
+    repeated_joints : ndarray of shape (K − 1,), float64, or None
+        The share of repeats that have both parts of a joint, and join them.
     mapped : ndarray of shape (N,), int64
         Sensors that have distances, at most 800, spread over all.
     distances : ndarray of shape (N, N), float64
@@ -166,6 +176,10 @@ class Estimate(Joints):
     keep_saturated: bool
     interval: Optional[float]
     seed: int
+    repeats: int
+    repeated: Optional[np.ndarray]
+    repeated_parts: Optional[np.ndarray]
+    repeated_joints: Optional[np.ndarray]
     mapped: np.ndarray
     distances: np.ndarray
     shows_tree: bool
@@ -226,6 +240,7 @@ def estimate(
     *,
     keep_saturated: bool = False,
     force: bool = False,
+    repeats: int = 0,
     random_state: RandomState = None,
     n_jobs: Optional[int] = -1,
     progress: Progress = None,
@@ -250,6 +265,9 @@ def estimate(
         Use values at the end of the range of their sensor, which otherwise count as missing.
     force : bool, default False
         Give the tree even if rigid parts do not explain the recording.
+    repeats : int, default 0
+        Estimate again so many times from resampled blocks of time, and count how often sensors, parts and joints are found again. Takes
+        as many times as long. Support takes the parts as given; this does not.
     random_state : int, NumPy generator or None
         Seed of the bootstrap, from 0 to 2**64 − 1. None is `bodyschema.SEED`, as on the command line.
     n_jobs : int or None, default -1
@@ -298,8 +316,9 @@ def estimate(
     seed, jobs = seed_of(random_state), jobs_of(n_jobs)
     array, read_interval = touch_of(touch)
     interval = read_interval if interval is None else interval
-    with progress_of(progress, 3, "estimate") as tell:
-        facts = _bodyschema.estimate(array, said, seed, jobs, tell)
+    count = count_of(repeats, "repeats", 0)
+    with progress_of(progress, 3 + count, "estimate") as tell:
+        facts = _bodyschema.estimate(array, said, seed, count, jobs, tell)
     verdict, sensors, all_sensors = facts["verdict"], facts["sensors"], array.shape[1]
     fit = Fit(verdict, facts["explained"], facts["novelty"], facts["cause"])
     warn_of_cleaning(facts, all_sensors)
@@ -327,6 +346,10 @@ def estimate(
         keep_saturated=said[1],
         interval=None if interval is None else float(interval),
         seed=seed,
+        repeats=count,
+        repeated=of_all(facts["repeated"], np.nan) if count > 0 else None,
+        repeated_parts=facts["repeated_parts"] if count > 0 else None,
+        repeated_joints=(facts["repeated_joints"] if shows_tree else np.empty(0)) if count > 0 else None,
         mapped=facts["mapped"],
         distances=facts["distances"],
         shows_tree=shows_tree,

@@ -2,7 +2,9 @@
 
 use std::path::PathBuf;
 
-use bodyschema::estimate::{Estimate, TooFewSensors, Verdict, estimate as estimate_of};
+use bodyschema::estimate::{
+    Estimate, Repeats, TooFewSensors, Verdict, estimate as estimate_of, repeats as repeats_of,
+};
 use bodyschema::files::FrontEnd;
 use bodyschema::files::touch::{Column, Decimal, Format, Recorded, Separator, TimeColumn, read_recorded};
 use bodyschema::numerics::rng::stream;
@@ -103,12 +105,13 @@ fn cleaned(tactile: Tactile, (signed, keep_saturated): Said) -> Recording {
 
 /// `bodyschema estimate`.
 #[pyfunction]
-#[pyo3(signature = (touch, said, seed, jobs, progress))]
+#[pyo3(signature = (touch, said, seed, repeats, jobs, progress))]
 pub(crate) fn estimate<'py>(
     py: Python<'py>,
     touch: &Bound<'py, PyAny>,
     said: Said,
     seed: u64,
+    repeats: usize,
     jobs: usize,
     progress: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
@@ -119,10 +122,11 @@ pub(crate) fn estimate<'py>(
         let recording = cleaned(tactile, said);
         let rng = &mut stream(seed, 1, "co-motion", 0);
         let found = estimate_of(&recording, &levels, rng, &|| steps.tick())?;
-        Ok((recording, found))
+        let again = (repeats > 0).then(|| repeats_of(&recording, &found, repeats, rng, &|| steps.tick()));
+        Ok((recording, found, again))
     };
     let outcome = threads.run(py, progress, work)?;
-    let (recording, found) = outcome.map_err(|error: TooFewSensors| value_error(error))?;
+    let (recording, found, again) = outcome.map_err(|error: TooFewSensors| value_error(error))?;
     let facts = PyDict::new(py);
     became(&facts, &recording)?;
     let Estimate { fit, parts, joints, mapped, distances } = found;
@@ -141,6 +145,11 @@ pub(crate) fn estimate<'py>(
     facts.set_item("next_parts", others.into_pyarray(py))?;
     facts.set_item("next_residuals", left.into_pyarray(py))?;
     joined(&facts, &joints)?;
+    if let Some(Repeats { sensors, parts, tree, .. }) = again {
+        facts.set_item("repeated", sensors.into_pyarray(py))?;
+        facts.set_item("repeated_parts", parts.into_values().collect::<Vec<f64>>().into_pyarray(py))?;
+        facts.set_item("repeated_joints", tree.into_pyarray(py))?;
+    }
     facts.set_item("mapped", whole(mapped.iter().map(|&at| recording.sensors[at])).into_pyarray(py))?;
     facts.set_item("distances", by_rows(py, distances.sensors, distances.values)?)?;
     Ok(facts)

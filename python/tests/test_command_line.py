@@ -40,10 +40,11 @@ def test_estimate(folder, tmp_path, command, moved, kind):
     elif kind == "float64":
         touch = touch.astype(np.float64) * np.pi
     np.save(tmp_path / "touch.npy", touch)
-    command("estimate", tmp_path / "touch.npy", "--seed", SEED, "--force", "--out", tmp_path / "found")
+    repeats = {"gaps": 2}.get(kind, 0)
+    command("estimate", tmp_path / "touch.npy", "--seed", SEED, "--force", "--repeats", repeats, "--out", tmp_path / "found")
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", bodyschema.RecordingWarning)
-        found = bodyschema.estimate(touch, random_state=SEED, force=True)
+        found = bodyschema.estimate(touch, random_state=SEED, force=True, repeats=repeats)
     summary = json.loads((tmp_path / "found/summary.json").read_text())
     facts = [found.fit.verdict, found.fit.explained, found.fit.novelty, len(found.samples), len(found.labels), found.noisy, found.signed, found.seed]
     assert facts == [summary[name] for name in ["fit", "explained", "novelty", "samples", "parts", "noisy", "signed", "seed"]]
@@ -54,6 +55,12 @@ def test_estimate(folder, tmp_path, command, moved, kind):
     assert found.residuals[own].tobytes() == rows["residual"].tobytes()
     assert found.next_parts[own].tolist() == rows["next_part"].tolist()
     assert found.next_residuals[own].tobytes() == rows["next_residual"].tobytes()
+    if repeats > 0:
+        assert found.repeated[own].tobytes() == rows["repeated"].tobytes()
+        shares = table(tmp_path / "found/repeats.csv")["repeated"].tolist()
+        assert [*found.repeated_parts.tolist(), *found.repeated_joints.tolist()] == shares
+    else:
+        assert found.repeated is None and found.repeated_parts is None and found.repeated_joints is None
     dropped = table(tmp_path / "found/dropped.csv") if found.dropped else np.empty(0)
     assert list(found.dropped.items()) == dropped.tolist()
     tree = table(tmp_path / "found/tree.csv")

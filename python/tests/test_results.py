@@ -56,6 +56,7 @@ def test_networkx_has_the_tree(found):
     for (child, parent), support in zip(found.tree.tolist(), found.support.tolist()):
         assert graph.edges[child, parent]["support"] == support
         assert 0 < graph.edges[child, parent]["correlation"] <= 1
+        assert graph.edges[child, parent]["information"] > 0
 
 
 class Checker(html.parser.HTMLParser):

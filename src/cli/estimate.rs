@@ -12,10 +12,11 @@ use super::estimate_report::Shown;
 use super::options::{SettingsAndSeed, TruthFiles};
 use super::output::say;
 use super::placement;
+use super::repeats;
 use super::touch::TouchFile;
 use super::tree::{self, refuse_truth};
 use crate::analysis::statistics::mean;
-use crate::estimate::{self, Verdict, estimate};
+use crate::estimate::{self, Repeats, Verdict, estimate};
 use crate::files::tables::{write_rows, write_rows_of};
 use crate::files::{prepare_folder, write_text};
 use crate::numerics::rng::stream;
@@ -46,6 +47,9 @@ pub(super) struct Estimate {
     /// Show tree and report even if rigid parts do not explain the recording
     #[arg(long)]
     force: bool,
+    /// Estimate again N times from resampled times, and tell how often sensors, parts and joints are found again
+    #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true, value_parser = clap::value_parser!(u64).range(..=1000))]
+    repeats: u64,
     /// Folder to write to
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
@@ -68,6 +72,8 @@ struct PartRow {
     residual: f64,
     next_part: Option<usize>,
     next_residual: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    repeated: Option<f64>,
 }
 
 /// summary.json.
@@ -88,6 +94,8 @@ struct Summary {
     interval: Option<f64>,
     parts: usize,
     seed: u64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    repeats: Option<usize>,
     revision: &'static str,
     #[serde(skip_serializing_if = "Option::is_none")]
     truth: Option<AgainstTruth>,
@@ -143,13 +151,16 @@ impl Estimate {
                 recording.dropped.len()
             );
         }
-        let bar = progress(3, "estimate".to_owned());
+        let bar = progress(3 + self.repeats, "estimate".to_owned());
         let mut rng = stream(seed, 1, "co-motion", 0);
         let found = estimate(&recording, &settings.quantise, &mut rng, &|| bar.inc(1))?;
-        bar.finish_and_clear();
         let shows_tree = self.force || found.fit.verdict != Verdict::DoesNotFit;
+        let count = if shows_tree { self.repeats as usize } else { 0 };
+        let again =
+            (count > 0).then(|| estimate::repeats(&recording, &found, count, &mut rng, &|| bar.inc(1)));
+        bar.finish_and_clear();
         let against = truth.as_ref().map(|truth| AgainstTruth::new(&found, &recording.truth(truth)));
-        let summary = write(out, &found, &recording, (interval, seed), shows_tree, against)?;
+        let summary = write(out, &found, again.as_ref(), &recording, (interval, seed), shows_tree, against)?;
         let sites = sites.filter(|_| shows_tree).map(|sites| recording.of_sensors(&sites));
         let placed = placement::write(out, &recording, &found, sites.as_deref())?;
         say(found.fit.to_string())?;
@@ -178,6 +189,9 @@ impl Estimate {
             ))?;
         }
         tree::print(&found.joints, &found.parts.labels)?;
+        if let Some(again) = &again {
+            repeats::print(again, &found.joints.tree)?;
+        }
         placed.into_iter().try_for_each(say)?;
         if let Some(truth) = truth {
             let score = score(&found.parts.labels, &found.joints.tree, &recording.truth(&truth), 1.0);
@@ -191,6 +205,7 @@ impl Estimate {
 fn write(
     out: &Path,
     found: &estimate::Estimate,
+    again: Option<&Repeats>,
     recording: &Recording,
     (interval, seed): (Option<f64>, u64),
     shows_tree: bool,
@@ -200,7 +215,8 @@ fn write(
     let parts = sensors.iter().enumerate().map(|(at, &sensor)| {
         let (next_part, next_residual) = found.parts.alternatives[at].first().copied().unzip();
         let (part, residual) = (found.parts.labels[at], found.parts.residuals[at]);
-        PartRow { sensor, part, residual, next_part, next_residual }
+        let repeated = again.map(|again| again.sensors[at]);
+        PartRow { sensor, part, residual, next_part, next_residual, repeated }
     });
     write_rows(&out.join("parts.csv"), parts)?;
     let row = |(sensor, fault): &(usize, Fault)| DroppedRow { sensor: *sensor, fault: fault.to_string() };
@@ -215,6 +231,7 @@ fn write(
             }
         }
     }
+    repeats::write(out, again, &found.joints.tree)?;
     let summary = Summary {
         fit: found.fit.verdict.to_string(),
         explained: found.fit.explained,
@@ -231,6 +248,7 @@ fn write(
         interval,
         parts: found.joints.ranks.len(),
         seed,
+        repeats: again.map(|again| again.count),
         revision: env!("BODYSCHEMA_REVISION"),
         truth,
     };

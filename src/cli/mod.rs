@@ -9,6 +9,7 @@ mod output;
 mod placement;
 mod posterior;
 mod program;
+mod repeats;
 mod results;
 mod simulate;
 mod stages;

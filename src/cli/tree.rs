@@ -124,6 +124,7 @@ pub(super) fn write(out: &Path, found: &Joints, labels: &[usize]) -> Result<()> 
     let link = |pair: &Pair| Link {
         parts: [pair.part, pair.other],
         correlation: pair.correlation,
+        information: pair.information,
         support: pair.support,
     };
     let links: Vec<Link> = found.pairs.iter().filter(|pair| pair.in_tree).map(link).collect();

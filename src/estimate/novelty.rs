@@ -57,7 +57,7 @@ pub(super) fn novelty(tactile: &Tactile, sensors: &[usize]) -> f64 {
 /// Whether few motions explain nearly all of what some sensors feel. In: M × T pressures, and the sensors.
 pub(super) fn has_few_motions(tactile: &Tactile, sensors: &[usize]) -> bool {
     let mut roots = roots(tactile, sensors);
-    for mut row in roots.row_iter_mut() {
+    for row in roots.row_iter_mut() {
         let size = row.norm_l2().max(f64::MIN_POSITIVE);
         row.iter_mut().for_each(|root| *root /= size);
     }

@@ -22,6 +22,8 @@ pub struct Link {
     pub parts: [usize; 2],
     /// Correlation of the joint's speed, 0 to 1.
     pub correlation: f64,
+    /// Information of the joint, nats.
+    pub information: f64,
     /// Bootstrap support, 0 to 1.
     pub support: f64,
 }
@@ -33,11 +35,13 @@ pub fn dot(nodes: &[Node], links: &[Link]) -> String {
         let label = format!("part {part}\\n{sensors} sensors");
         add(&mut text, format_args!("  {part} [label=\"{label}\", sensors={sensors}, rank={rank}];\n"));
     }
-    for Link { parts: [a, b], correlation, support } in links {
+    for Link { parts: [a, b], correlation, information, support } in links {
         let label = format!("{:.0} %", 100.0 * support);
         add(
             &mut text,
-            format_args!("  {a} -- {b} [label=\"{label}\", support={support}, correlation={correlation}];\n"),
+            format_args!(
+                "  {a} -- {b} [label=\"{label}\", support={support}, correlation={correlation}, information={information}];\n"
+            ),
         );
     }
     text + "}\n"
@@ -52,6 +56,7 @@ pub fn graphml(nodes: &[Node], links: &[Link]) -> String {
         ("sensors", "node", "int"),
         ("rank", "node", "int"),
         ("correlation", "edge", "double"),
+        ("information", "edge", "double"),
         ("support", "edge", "double"),
     ] {
         add(
@@ -70,9 +75,10 @@ pub fn graphml(nodes: &[Node], links: &[Link]) -> String {
             ),
         );
     }
-    for Link { parts: [a, b], correlation, support } in links {
-        let both = data("correlation", correlation) + &data("support", support);
-        add(&mut text, format_args!("    <edge source=\"{a}\" target=\"{b}\">{both}</edge>\n"));
+    for Link { parts: [a, b], correlation, information, support } in links {
+        let all = [("correlation", correlation), ("information", information), ("support", support)];
+        let all = all.map(|(key, value)| data(key, value)).concat();
+        add(&mut text, format_args!("    <edge source=\"{a}\" target=\"{b}\">{all}</edge>\n"));
     }
     text + "  </graph>\n</graphml>\n"
 }
@@ -91,7 +97,7 @@ mod tests {
 
     fn tree() -> ([Node; 2], [Link; 1]) {
         let node = |part| Node { part, sensors: 40, rank: 6 };
-        ([node(0), node(3)], [Link { parts: [0, 3], correlation: 0.998, support: 1.0 }])
+        ([node(0), node(3)], [Link { parts: [0, 3], correlation: 0.998, information: 2.5, support: 1.0 }])
     }
 
     #[test]
@@ -101,7 +107,7 @@ mod tests {
             dot(&nodes, &links),
             "graph parts {\n  0 [label=\"part 0\\n40 sensors\", sensors=40, rank=6];\n  \
              3 [label=\"part 3\\n40 sensors\", sensors=40, rank=6];\n  \
-             0 -- 3 [label=\"100 %\", support=1, correlation=0.998];\n}\n"
+             0 -- 3 [label=\"100 %\", support=1, correlation=0.998, information=2.5];\n}\n"
         );
         assert_eq!(dot(&[], &[]), "graph parts {\n}\n");
     }

@@ -20,6 +20,6 @@ mod moments;
 mod refine;
 mod tree;
 
-pub(crate) use self::refine::refine;
-pub(crate) use self::tree::joint_tree;
+pub(crate) use self::refine::{refine, refine_tree};
 pub use self::tree::{Joints, Pair, joints};
+pub(crate) use self::tree::{blocks, joint_tree};

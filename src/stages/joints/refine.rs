@@ -7,12 +7,13 @@ use rand::Rng;
 use rayon::prelude::*;
 
 use super::assign::{assign, gain};
-use super::tree::Joints;
+use super::tree::{Joints, tree_of_motions};
 use crate::numerics::partition::{named_by_appearance, sizes};
 use crate::stages::rigid_parts::{
     MotionSubspace, RigidParts, Roots, opposite_pairs, similar, stratified, typical_size,
 };
 use crate::stages::sense::Tactile;
+use crate::stages::tree::Edge;
 
 /// Samples that similarity is computed from, spread over all.
 const MAX_SAMPLES: usize = 2000;
@@ -34,9 +35,26 @@ type Members = BTreeMap<usize, Vec<usize>>;
 pub(crate) fn refine(
     tactile: &Tactile,
     signed: bool,
-    mut parts: RigidParts,
+    parts: RigidParts,
     rng: &mut impl Rng,
 ) -> (RigidParts, Joints) {
+    let (refined, names, motions) = refined(tactile, signed, parts);
+    let joints = Joints::of_motions(&names, &motions, tactile.samples, rng);
+    (refined, joints)
+}
+
+/// The part of each sensor and the tree of [`refine`], without the support of its edges.
+pub(crate) fn refine_tree(tactile: &Tactile, signed: bool, parts: RigidParts) -> (Vec<usize>, Vec<Edge>) {
+    let (refined, names, motions) = refined(tactile, signed, parts);
+    (refined.labels, tree_of_motions(&names, &motions, tactile.samples))
+}
+
+/// The parts with each unassigned cluster assigned, and the label of each, rising, with its motion.
+fn refined(
+    tactile: &Tactile,
+    signed: bool,
+    mut parts: RigidParts,
+) -> (RigidParts, Vec<usize>, Vec<MotionSubspace>) {
     let mut refinement = Refinement::new(tactile, signed);
     let (mut refined, names, motions) = loop {
         let mut refined = parts.clone();
@@ -55,9 +73,8 @@ pub(crate) fn refine(
         *others = others.iter().filter_map(|(part, residual)| Some((*new.get(part)?, *residual))).collect();
     }
     (refined.labels, refined.unassigned) = (labels, Vec::new());
-    let (names, motions): (Vec<usize>, Vec<MotionSubspace>) = nodes.into_iter().unzip();
-    let joints = Joints::of_motions(&names, &motions, tactile.samples, rng);
-    (refined, joints)
+    let (names, motions) = nodes.into_iter().unzip();
+    (refined, names, motions)
 }
 
 /// The largest clusters, and the sensors of the others.

@@ -117,8 +117,13 @@ pub fn joints(
 /// The tree of [`joints`] without its support, which takes longest of a short recording.
 pub(crate) fn joint_tree(tactile: &Tactile, signed: bool, labels: &[Option<usize>]) -> Vec<Edge> {
     let (parts, motions) = parts_and_motions(tactile, signed, labels, None);
-    let moments = Moments::new(&motions, tactile.samples, blocks(tactile.samples));
-    labelled(&maximum_spanning_tree(&moments.dependence().information), &parts)
+    tree_of_motions(&parts, &motions, tactile.samples)
+}
+
+/// The tree over parts with these labels, rising, from their motions at the same samples, without its support.
+pub(super) fn tree_of_motions(labels: &[usize], motions: &[MotionSubspace], samples: usize) -> Vec<Edge> {
+    let moments = Moments::new(motions, samples, blocks(samples));
+    labelled(&maximum_spanning_tree(&moments.dependence().information), labels)
 }
 
 /// The labels of the parts, rising, and the motion of each.
@@ -133,8 +138,8 @@ fn parts_and_motions(
     motions_of_parts(tactile, signed, labels, rank).into_iter().unzip()
 }
 
-/// Number of blocks of so many samples.
-fn blocks(samples: usize) -> usize {
+/// Number of blocks that so many samples are cut into, to be drawn with replacement.
+pub(crate) fn blocks(samples: usize) -> usize {
     (samples / BLOCK_SAMPLES).clamp(2, BLOCKS)
 }
 
