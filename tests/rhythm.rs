@@ -5,10 +5,13 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use bodyschema::estimate::{Fit, Verdict, estimate};
 use bodyschema::files::body::read_body;
 use bodyschema::numerics::rng::stream;
-use bodyschema::settings::Settings;
+use bodyschema::recording::Recording;
+use bodyschema::settings::{Base, Settings};
 use bodyschema::stages::agent::Agent;
+use bodyschema::stages::sense::sense;
 use bodyschema::stages::simulate::{Controller, Movement, Targets, Trajectory, simulate};
 use rayon::prelude::*;
 
@@ -161,6 +164,26 @@ fn the_spectrum_of_a_wandering_rhythm_lies_about_its_frequency() {
     assert!(measured(&settings).1 < 0.5);
 }
 
+/// What `estimate` says of a movement of three parts of 1,000 s.
+fn verdict(settings: &Settings) -> Fit {
+    let agent = read_body(&root().join("bodies/chain-3.toml")).unwrap().agent;
+    let tactile = sense(&agent, &moved(&agent, settings, 1), &settings.sense);
+    let levels = Settings::load_over(Some(Base::ESTIMATE), None).unwrap().quantise;
+    estimate(&Recording::new(tactile), &levels, &mut stream(1, 1, "co-motion", 0), &|| ()).unwrap().fit
+}
+
+#[test]
+fn a_movement_in_one_gait_does_not_tell_parts_apart_and_estimate_says_so() {
+    let mut settings = swimming();
+    settings.physics.duration = 1000.0;
+    let fit = verdict(&settings);
+    assert!(fit.verdict == Verdict::DoesNotFit && fit.cause.unwrap().contains("repeats itself"), "{fit}");
+    // The same body at random.
+    settings.motion.movement = Movement::Random;
+    let fit = verdict(&settings);
+    assert_eq!(fit.verdict, Verdict::Good, "{fit}");
+}
+
 /// 10⁵ samples: far away from where it began, a body still moves within what the step resolves, by the same rhythm.
 #[test]
 fn long_movements_of_all_kinds_of_joints_stay_finite_and_resolved() {
@@ -258,6 +281,10 @@ fn the_same_seed_gives_the_same_files_and_mistakes_are_named() {
         (
             "motion = { rhythm = { frequency = 11.0 } }",
             "`motion.rhythm.frequency` is 11.0, but must be 0.0001 to 10 (Hz)",
+        ),
+        (
+            "motion = { movement = \"rhythmic\", rhythm = { gait_time = 4.0 } }",
+            "`motion.rhythm.gait_time` is 4.0, but must be 0, or from 1 / motion.rhythm.frequency",
         ),
         ("motion = { rhythm = { speed = 1.0 } }", "unknown setting `motion.rhythm.speed`"),
         (

@@ -13,7 +13,7 @@ _Said = tuple[bool | None, bool]
 
 def read_touch(path: str, reading: dict[str, Any], jobs: int) -> tuple[NDArray[np.float32], float | None, list[str]]: ...
 def estimate(
-    touch: NDArray[np.float32] | NDArray[np.float64], said: _Said, seed: int, repeats: int, jobs: int, progress: _Tell
+    touch: NDArray[np.float32] | NDArray[np.float64], said: _Said, seed: int, again: tuple[int, bool], jobs: int, progress: _Tell
 ) -> dict[str, Any]: ...
 def tree(
     touch: NDArray[np.float32] | NDArray[np.float64],

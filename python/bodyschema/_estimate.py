@@ -28,6 +28,7 @@ class Fit:
     novelty : float
         The share of what is felt at a sample that the most similar other state leaves, 0 to 1, the median over samples. Below 0.001 the
         movement repeats itself; if it also consists of few motions, as one rhythm does, the verdict is "does not fit".
+        Below 0.1 it is doubtful at best.
     cause : str or None
         What is likely to be the matter, unless the verdict is good.
     """
@@ -149,11 +150,12 @@ class Estimate(Joints):
     seed : int
         Seed of the bootstrap.
     repeats : int
-        How many times parts and tree were estimated again, from resampled times.
+        How many times parts and tree were estimated again, from resampled times; 0 where there is no tree.
     repeated : ndarray of shape (M,), float64, or None
-        The share of these repeats in which a sensor is on the same part, 0 to 1; NaN for one that was left out. None without repeats.
+        The share of these repeats that have the part of a sensor, and the sensor on it, 0 to 1; NaN for one that was left out. None
+        without repeats.
     repeated_parts : ndarray of shape (K,), float64, or None
-        The share of repeats that have a part: one of their parts has more than half of all sensors of both.
+        The share of repeats that have a part: its counterpart and it have more than half of their sensors in common.
     repeated_joints : ndarray of shape (K − 1,), float64, or None
         The share of repeats that have both parts of a joint, and join them.
     mapped : ndarray of shape (N,), int64
@@ -206,6 +208,7 @@ class Estimate(Joints):
             for part, node in self._nodes().items()
         }
         lines.extend(_picture.text_tree(names, self.tree, self.support))
+        lines.extend(self._again())
         if len(self.labels) == 1:
             residual = float(np.nanmean(self.residuals))
             still = "; no joint seems to move" if residual < 0.05 else ""
@@ -213,6 +216,16 @@ class Estimate(Joints):
                 f"no two parts can be distinguished: the residual variance of a single rigid motion is {100 * residual:.1f} %{still}"
             )
         return "\n".join(lines)
+
+    def _again(self) -> list[str]:
+        """What repeats say, if there were any."""
+        if self.repeated_parts is None or self.repeated_joints is None:
+            return []
+        names = [f"part {part}" for part in self.labels.tolist()] + [f"joint {child}–{parent}" for child, parent in self.tree.tolist()]
+        times = np.rint(self.repeats * np.concatenate([self.repeated_parts, self.repeated_joints])).astype(int).tolist()
+        seldom = [f"{name} ({found} of {self.repeats})" for name, found in zip(names, times) if found < self.repeats]
+        but = f", except {', '.join(seldom)}" if seldom else ""
+        return [f"estimated again {self.repeats} times from resampled times: all parts and joints were found every time{but}"]
 
     def _nodes(self) -> dict[int, dict[str, Any]]:
         nodes = super()._nodes()
@@ -266,8 +279,8 @@ def estimate(
     force : bool, default False
         Give the tree even if rigid parts do not explain the recording.
     repeats : int, default 0
-        Estimate again so many times from resampled blocks of time, and count how often sensors, parts and joints are found again. Takes
-        as many times as long. Support takes the parts as given; this does not.
+        Estimate again so many times, at most 1,000, from resampled blocks of time, and count how often sensors, parts and joints are
+        found again. Each repeat takes about as long as the estimate. Support takes the parts as given; this does not.
     random_state : int, NumPy generator or None
         Seed of the bootstrap, from 0 to 2**64 − 1. None is `bodyschema.SEED`, as on the command line.
     n_jobs : int or None, default -1
@@ -317,12 +330,15 @@ def estimate(
     array, read_interval = touch_of(touch)
     interval = read_interval if interval is None else interval
     count = count_of(repeats, "repeats", 0)
+    if count > 1000:
+        raise ValueError(f"repeats must be at most 1000, but is {count}")
     with progress_of(progress, 3 + count, "estimate") as tell:
-        facts = _bodyschema.estimate(array, said, seed, count, jobs, tell)
+        facts = _bodyschema.estimate(array, said, seed, (count, force), jobs, tell)
     verdict, sensors, all_sensors = facts["verdict"], facts["sensors"], array.shape[1]
     fit = Fit(verdict, facts["explained"], facts["novelty"], facts["cause"])
     warn_of_cleaning(facts, all_sensors)
     shows_tree = force or facts["fits"]
+    count = count if shows_tree else 0
     if not facts["fits"]:
         note = "parts and tree mean nothing" if shows_tree else "parts mean nothing, and no tree is given (force=True does)"
         warnings.warn(f"{fit}; {note}", RecordingWarning, stacklevel=2)
@@ -349,7 +365,7 @@ def estimate(
         repeats=count,
         repeated=of_all(facts["repeated"], np.nan) if count > 0 else None,
         repeated_parts=facts["repeated_parts"] if count > 0 else None,
-        repeated_joints=(facts["repeated_joints"] if shows_tree else np.empty(0)) if count > 0 else None,
+        repeated_joints=facts["repeated_joints"] if count > 0 else None,
         mapped=facts["mapped"],
         distances=facts["distances"],
         shows_tree=shows_tree,

@@ -103,26 +103,28 @@ fn cleaned(tactile: Tactile, (signed, keep_saturated): Said) -> Recording {
     Recording::cleaned(tactile, Cleaning { keep_saturated, signed })
 }
 
-/// `bodyschema estimate`.
+/// `bodyschema estimate`, with so many repeats, and whether also where it does not fit.
 #[pyfunction]
-#[pyo3(signature = (touch, said, seed, repeats, jobs, progress))]
+#[pyo3(signature = (touch, said, seed, again, jobs, progress))]
 pub(crate) fn estimate<'py>(
     py: Python<'py>,
     touch: &Bound<'py, PyAny>,
     said: Said,
     seed: u64,
-    repeats: usize,
+    again: (usize, bool),
     jobs: usize,
     progress: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let threads = Threads::start(jobs)?;
+    let (threads, (repeats, force)) = (Threads::start(jobs)?, again);
     let tactile = arrays::touch(&threads, touch)?;
     let levels = Settings::load_over(Some(Base::ESTIMATE), None).map_err(value_error)?.quantise;
     let work = move |steps: &Steps| {
         let recording = cleaned(tactile, said);
         let rng = &mut stream(seed, 1, "co-motion", 0);
         let found = estimate_of(&recording, &levels, rng, &|| steps.tick())?;
-        let again = (repeats > 0).then(|| repeats_of(&recording, &found, repeats, rng, &|| steps.tick()));
+        let shows_tree = force || found.fit.verdict != Verdict::DoesNotFit;
+        let again = (repeats > 0 && shows_tree)
+            .then(|| repeats_of(&recording, &found, repeats, rng, &|| steps.tick()));
         Ok((recording, found, again))
     };
     let outcome = threads.run(py, progress, work)?;

@@ -139,7 +139,7 @@ def test_what_does_not_fit_the_memory_is_refused():
     for dtype in [np.float32, np.float64]:
         huge = np.broadcast_to(np.zeros(1, dtype=dtype), (10**11, 100))
         with pytest.raises(MemoryError, match="does not fit the memory"):
-            bodyschema._bodyschema.estimate(huge, (None, False), 1, 0, 1, None)
+            bodyschema._bodyschema.estimate(huge, (None, False), 1, (0, False), 1, None)
         with pytest.raises(MemoryError, match="does not fit the memory"):
             bodyschema._bodyschema.quantise(huge, "", 1)
     with pytest.raises(MemoryError, match="does not fit the memory"):
@@ -185,6 +185,7 @@ def test_nonsense_never_ends_in_a_mistake_of_ours(samples, sensors):
         ({"random_state": 2**64}, "random_state"),
         ({"random_state": "1"}, "random_state"),
         ({"repeats": -1}, "repeats"),
+        ({"repeats": 1001}, "repeats"),
         ({"n_jobs": 0}, "n_jobs"),
         ({"n_jobs": 5000}, "n_jobs"),
         ({"progress": 7}, "progress"),

@@ -32,6 +32,12 @@ def test_the_number_of_threads_changes_no_bit(moved, found, n_jobs):
     assert same(bodyschema.estimate(moved.touch, interval=moved.interval, n_jobs=n_jobs), found)
 
 
+def test_the_number_of_threads_changes_no_repeat(moved):
+    few = moved.touch[:300]
+    found = [bodyschema.estimate(few, repeats=3, n_jobs=n_jobs) for n_jobs in [1, 2]]
+    assert same(*found) and found[0].repeats == 3 and "estimated again 3 times" in str(found[0])
+
+
 def test_several_python_threads_beside_each_other(moved, found):
     results = [None] * 4
 

@@ -52,9 +52,9 @@ pub(super) fn print(repeats: &Repeats, tree: &[Edge]) -> Result<()> {
         .filter(|(_, found)| *found < repeats.count)
         .map(|(name, found)| format!("{name} ({found} of {})", repeats.count))
         .collect();
-    let but = if seldom.is_empty() { String::new() } else { format!(", but {}", seldom.join(", ")) };
-    say(format!(
-        "estimated again {} times from resampled times: each part and joint was found every time{but}",
-        repeats.count
-    ))
+    let found = match &seldom[..] {
+        [] => "all parts and joints were found every time".to_owned(),
+        _ => format!("all parts and joints were found every time, except {}", seldom.join(", ")),
+    };
+    say(format!("estimated again {} times from resampled times: {found}", repeats.count))
 }

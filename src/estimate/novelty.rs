@@ -26,9 +26,9 @@ const EXPLAINED: f64 = 0.99;
 /// The median, over samples, of the share of what is felt that the most similar sample leaves: 0 if every state comes again exactly, and 1
 /// if none is like another. Samples just before and after, which are of the same state, do not count; speed does not count, either.
 ///
-/// In: M × T pressures, and some of the sensors. 1 if nothing moves.
-pub(super) fn novelty(tactile: &Tactile, sensors: &[usize]) -> f64 {
-    let roots = roots(tactile, sensors);
+/// In: M × T pressures, whether negative ones are signal, and some of the sensors. 1 if nothing moves.
+pub(super) fn novelty(tactile: &Tactile, signed: bool, sensors: &[usize]) -> f64 {
+    let roots = roots(tactile, signed, sensors);
     let size = |t: usize| roots.col(t).norm_l2();
     let sizes: Vec<f64> = (0..roots.ncols()).map(size).collect();
     let least = REST * median(sizes.clone());
@@ -54,9 +54,9 @@ pub(super) fn novelty(tactile: &Tactile, sensors: &[usize]) -> f64 {
     median((0..moving.len()).map(left).collect())
 }
 
-/// Whether few motions explain nearly all of what some sensors feel. In: M × T pressures, and the sensors.
-pub(super) fn has_few_motions(tactile: &Tactile, sensors: &[usize]) -> bool {
-    let mut roots = roots(tactile, sensors);
+/// Whether few motions explain nearly all of what some sensors feel. In: as for [`novelty`].
+pub(super) fn has_few_motions(tactile: &Tactile, signed: bool, sensors: &[usize]) -> bool {
+    let mut roots = roots(tactile, signed, sensors);
     for row in roots.row_iter_mut() {
         let size = row.norm_l2().max(f64::MIN_POSITIVE);
         row.iter_mut().for_each(|root| *root /= size);
@@ -64,18 +64,28 @@ pub(super) fn has_few_motions(tactile: &Tactile, sensors: &[usize]) -> bool {
     let mut products = Mat::zeros(sensors.len(), sensors.len());
     matmul(products.as_mut(), Accum::Replace, roots.as_ref(), roots.transpose(), 1.0, Par::Seq);
     let all: f64 = (0..sensors.len()).map(|at| products[(at, at)]).sum();
-    let first = largest(products.as_ref(), FEW.min(sensors.len()));
+    // A quarter of the components of few sensors, which have few in any case.
+    let first = largest(products.as_ref(), FEW.min(sensors.len() / 4));
     first.is_ok_and(|first| first.values.iter().sum::<f64>() >= EXPLAINED * all)
 }
 
-/// Roots of the pressures on some sensors at some samples, sensors × samples, with 0 where one is missing.
-fn roots(tactile: &Tactile, sensors: &[usize]) -> Mat<f64> {
+/// Roots of the pressures on some sensors at some samples, sensors × samples. Where one is missing, the one before.
+fn roots(tactile: &Tactile, signed: bool, sensors: &[usize]) -> Mat<f64> {
     let series: Vec<&[f32]> = tactile.series().collect();
     let samples: Vec<usize> = stratified(tactile.samples, MAX_SAMPLES).collect();
-    Mat::from_fn(sensors.len(), samples.len(), |at, sample| {
-        let pressure = f64::from(series[sensors[at]][samples[sample]]);
-        if pressure.is_nan() { 0.0 } else { pressure.signum() * pressure.abs().sqrt() }
-    })
+    let mut roots = Mat::zeros(sensors.len(), samples.len());
+    for (at, &sensor) in sensors.iter().enumerate() {
+        let mut last = 0.0;
+        for (sample, &t) in samples.iter().enumerate() {
+            let pressure = f64::from(series[sensor][t]);
+            if !pressure.is_nan() {
+                last =
+                    if signed { pressure.signum() * pressure.abs().sqrt() } else { pressure.max(0.0).sqrt() };
+            }
+            roots[(at, sample)] = last;
+        }
+    }
+    roots
 }
 
 #[cfg(test)]
@@ -99,7 +109,7 @@ mod tests {
     }
 
     fn of(tactile: &Tactile) -> f64 {
-        novelty(tactile, &(0..60).collect::<Vec<usize>>())
+        novelty(tactile, false, &(0..60).collect::<Vec<usize>>())
     }
 
     #[test]
@@ -127,9 +137,11 @@ mod tests {
         let rich = felt(0.0, |sensor, t| {
             (1..30).map(|own| (TAU * own as f64 * t / 10.0 - phase(sensor, own)).sin()).sum()
         });
-        let few = |tactile: &Tactile| has_few_motions(tactile, &(0..60).collect::<Vec<usize>>());
+        let few = |tactile: &Tactile| has_few_motions(tactile, false, &(0..60).collect::<Vec<usize>>());
+        let few_of_some =
+            |tactile: &Tactile| has_few_motions(tactile, false, &(0..20).collect::<Vec<usize>>());
         assert!(of(&one) < 1e-3 && of(&rich) < 1e-3, "{} {}", of(&one), of(&rich));
-        assert!(few(&one) && !few(&rich));
+        assert!(few(&one) && !few(&rich) && few_of_some(&one) && !few_of_some(&rich));
     }
 
     #[test]

@@ -12,9 +12,10 @@ use super::{Estimate, searched};
 use crate::numerics::partition::sizes;
 use crate::recording::Recording;
 use crate::stages::joints::{blocks, refine_tree};
-use crate::stages::rigid_parts::{rigid_parts, stratified};
+use crate::stages::rigid_parts::{MIN_SENSORS, rigid_parts, stratified};
 use crate::stages::sense::Tactile;
 use crate::stages::tree::Edge;
+use crate::stages::usable::usable_with;
 
 /// Most samples of a repeat, spread over all that were drawn: a bound on memory.
 const MAX_SAMPLES: usize = 20_000;
@@ -24,16 +25,20 @@ const MAX_SAMPLES: usize = 20_000;
 pub struct Repeats {
     /// How many times parts and tree were estimated again.
     pub count: usize,
-    /// For each sensor of the recording, the share of repeats in which it is on the same part.
+    /// For each sensor of the recording, the share of repeats that have its part, and the sensor on it. One that feels nothing at the times
+    /// of a repeat is not found again.
     pub sensors: Vec<f64>,
-    /// For each part, the share of repeats that have it: one of their parts has more than half of all sensors of both.
+    /// For each part, the share of repeats that have it: its counterpart and it have more than half of their sensors in common.
     pub parts: BTreeMap<usize, f64>,
     /// For each edge of the tree, the share of repeats that have both of its parts and join them.
     pub tree: Vec<f64>,
 }
 
-/// Estimates parts and tree `count` times from blocks of time, drawn with replacement, and compares with what was found. Calls `tick`
+/// Finds parts and tree `count` times from blocks of time, drawn with replacement, and compares with what was found. Calls `tick`
 /// after each. The same recording and state of `rng` give the same numbers, whatever the number of threads.
+///
+/// # Panics
+/// If `count` is 0.
 pub fn repeats(
     recording: &Recording,
     found: &Estimate,
@@ -41,17 +46,17 @@ pub fn repeats(
     rng: &mut impl Rng,
     tick: &dyn Fn(),
 ) -> Repeats {
+    assert!(count > 0, "at least one repeat");
     let (labels, tree) = (&found.parts.labels, &found.joints.tree);
     let mut sensors = vec![0; labels.len()];
     let mut parts: BTreeMap<usize, usize> = labels.iter().map(|label| (*label, 0)).collect();
     let mut edges = vec![0; tree.len()];
     for _ in 0..count {
-        let tactile = resampled(&recording.tactile, rng);
-        let again = rigid_parts(&tactile, recording.signed, &searched(&tactile));
-        let (other, other_tree) = refine_tree(&tactile, recording.signed, again);
+        let (other, other_tree) = found_again(&resampled(&recording.tactile, rng), recording.signed);
         let same = Matching::new(labels, &other);
         for (at, times) in sensors.iter_mut().enumerate() {
-            *times += usize::from(same.to.get(&labels[at]) == Some(&other[at]));
+            let is_on_it = other[at].is_some() && same.to.get(&labels[at]) == other[at].as_ref();
+            *times += usize::from(is_on_it && same.has(labels[at]));
         }
         for (part, times) in &mut parts {
             *times += usize::from(same.has(*part));
@@ -70,6 +75,22 @@ pub fn repeats(
     }
 }
 
+/// The part of each sensor, or `None` if it tells nothing, and the tree. Too few sensors have no parts.
+fn found_again(tactile: &Tactile, signed: bool) -> (Vec<Option<usize>>, Vec<Edge>) {
+    let mut labels = vec![None; tactile.sensors()];
+    // Saturated values of the recording are missing already.
+    let usable = usable_with(tactile.clone(), true);
+    if usable.sensors.len() < MIN_SENSORS {
+        return (labels, Vec::new());
+    }
+    let parts = rigid_parts(&usable.tactile, signed, &searched(&usable.tactile));
+    let (found, tree) = refine_tree(&usable.tactile, signed, parts);
+    for (sensor, label) in usable.sensors.into_iter().zip(found) {
+        labels[sensor] = Some(label);
+    }
+    (labels, tree)
+}
+
 /// As many samples, or [`MAX_SAMPLES`] of them, of blocks that are drawn with replacement.
 fn resampled(tactile: &Tactile, rng: &mut impl Rng) -> Tactile {
     let count = blocks(tactile.samples);
@@ -83,17 +104,20 @@ fn resampled(tactile: &Tactile, rng: &mut impl Rng) -> Tactile {
     Tactile { samples: samples.len(), pressures: tactile.series().flat_map(own).collect() }
 }
 
-/// Which part of one partition is which of another, one to one: those with the most sensors in common first.
+/// Which part of one partition is which of another, one to one: those with the most sensors in common first. Sensors that have no part in
+/// the other one do not count.
 struct Matching {
     to: BTreeMap<usize, usize>,
-    /// Those of the first partition that have more than half of the sensors of both in common with their counterpart.
+    /// Those that have more than half of all sensors of both in common with their counterpart.
     alike: Vec<usize>,
 }
 
 impl Matching {
-    fn new(labels: &[usize], other: &[usize]) -> Self {
-        let (ours, theirs) = (sizes(labels), sizes(other));
-        let both: Vec<(usize, usize)> = labels.iter().copied().zip(other.iter().copied()).collect();
+    fn new(labels: &[usize], other: &[Option<usize>]) -> Self {
+        let both: Vec<(usize, usize)> =
+            labels.iter().zip(other).filter_map(|(own, other)| Some((*own, (*other)?))).collect();
+        let (own, others): (Vec<usize>, Vec<usize>) = both.iter().copied().unzip();
+        let (ours, theirs) = (sizes(&own), sizes(&others));
         let mut common: Vec<((usize, usize), usize)> = sizes(&both).into_iter().collect();
         common.sort_by_key(|(_, count)| Reverse(*count));
         let (mut to, mut taken, mut alike) = (BTreeMap::new(), Vec::new(), Vec::new());
@@ -125,35 +149,4 @@ impl Matching {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::numerics::rng::stream;
-
-    #[test]
-    fn parts_have_counterparts_by_their_sensors_whatever_they_are_called() {
-        let same = Matching::new(&[0, 0, 0, 1, 1, 1, 2, 2], &[4, 4, 4, 0, 0, 0, 7, 0]);
-        assert_eq!(same.to, [(0, 4), (1, 0), (2, 7)].into());
-        // Part 2 has one of the two sensors of both in common: just half.
-        assert_eq!(same.alike, [0, 1]);
-        let joined = |child, parent| same.has_joint(&Edge { child: 0, parent: 1 }, &[Edge { child, parent }]);
-        assert!(joined(4, 0) && joined(0, 4) && !joined(7, 0));
-        assert!(!same.has_joint(&Edge { child: 2, parent: 1 }, &[Edge { child: 7, parent: 0 }]));
-    }
-
-    #[test]
-    fn times_are_drawn_in_blocks_for_all_sensors_alike() {
-        let pressures =
-            (0..2).flat_map(|sensor| (0..1000).map(move |t| (1000 * sensor + t) as f32)).collect();
-        let tactile = Tactile { samples: 1000, pressures };
-        let drawn = resampled(&tactile, &mut stream(1, 1, "repeats", 0));
-        assert_eq!(drawn.samples, 1000);
-        let series: Vec<&[f32]> = drawn.series().collect();
-        assert!(series[0].iter().zip(series[1]).all(|(first, second)| second - first == 1000.0));
-        let jumps = series[0].windows(2).filter(|pair| pair[1] - pair[0] != 1.0).count();
-        assert!((1..10).contains(&jumps), "{jumps}");
-        let mut times: Vec<f32> = series[0].to_vec();
-        times.sort_by(f32::total_cmp);
-        times.dedup();
-        assert!(times.len() < 1000 && times.len().is_multiple_of(100), "{}", times.len());
-    }
-}
+mod tests;

@@ -145,7 +145,9 @@ impl Rhythm {
         within("motion.rhythm.frequency", self.frequency, (1e-4, 10.0), "0.0001 to 10 (Hz)")?;
         within("motion.rhythm.frequency_spread", self.frequency_spread, (0.0, 1.0), "0 to 1")?;
         moderate("motion.rhythm.frequency_time", self.frequency_time)?;
-        within("motion.rhythm.gait_time", self.gait_time, (0.0, 1e6), "0 to 1000000 (s)")?;
+        let is_slow = self.gait_time == 0.0 || (1.0 / self.frequency..=1e6).contains(&self.gait_time);
+        let range = "0, or from 1 / motion.rhythm.frequency to 1000000 (s)";
+        check("motion.rhythm.gait_time", self.gait_time, is_slow, range)?;
         let largest = self.largest_amplitude;
         within("motion.rhythm.largest_amplitude", largest, (0.0, PI), "0 to pi (rad)")?;
         let range = "0 to motion.rhythm.largest_amplitude (rad)";
