@@ -1,4 +1,4 @@
-"""What scripts share: gaps.py, recordings.py and robots.py, which count how often parts and tree are right, and others that read tables."""
+"""What scripts share: gaps.py, recordings.py, repeats.py and robots.py, which count how often parts and tree are right, and others that read tables."""
 
 import csv
 import hashlib
@@ -28,10 +28,10 @@ def downloaded(file, url, sha256):
     return file
 
 
-def estimated(felt, found, seed):
+def estimated(felt, found, seed, *options):
     """What `estimate` finds in what was felt, compared with the truth: its summary, and the columns of TRUTH."""
     truth = ["--labels", felt / "labels.csv", "--tree", felt / "tree.csv"]
-    run("estimate", felt / "tactile.npy", *truth, "--seed", seed, "--out", found, "--force")
+    run("estimate", felt / "tactile.npy", *truth, "--seed", seed, "--out", found, "--force", *options)
     summary = json.loads((found / "summary.json").read_text())
     truth = summary["truth"]
     return summary, {
