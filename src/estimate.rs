@@ -65,8 +65,8 @@ const SHORT: usize = 1000;
 /// Novelty below which a movement repeats itself. Movements in one rhythm had 0.0002 at most, and recorded ones that are no loop at
 /// least 0.003 (docs/estimate.md).
 const LOOP: f64 = 1e-3;
-/// Novelty below which a movement comes back to similar states, so that a fit is doubtful at best. Half of the trees are wrong of bodies
-/// that swim in changing gaits, most of which have less; random and recorded movements of 1,000 samples and more had at least 0.12.
+/// Novelty below which a movement of few motions comes back to similar states, so that a fit is doubtful at best: bodies that swim in
+/// changing gaits, of which half of the trees are wrong. A recorded walk may have less, but consists of more motions.
 const SIMILAR: f64 = 0.1;
 
 /// Whether rigid parts explain what sensors felt.
@@ -106,8 +106,9 @@ pub struct Fit {
 }
 
 impl Fit {
-    /// Of parts before joints assign the sensors that no part explains. `is_loop`: whether few motions come again and again.
-    fn new(parts: &RigidParts, recording: &Recording, novelty: f64, is_loop: bool) -> Self {
+    /// Of parts before joints assign the sensors that no part explains. `few_motions`: whether it consists of
+    /// few motions, and comes back to similar states.
+    fn new(parts: &RigidParts, recording: &Recording, novelty: f64, few_motions: bool) -> Self {
         let is_noisy = 2 * recording.noisy > recording.sensors.len();
         let most = EXPLAINED[usize::from(is_noisy)];
         let own = parts.labels.iter().zip(&parts.residuals);
@@ -115,17 +116,15 @@ impl Fit {
             own.filter(|(label, residual)| !parts.unassigned.contains(label) && **residual <= most).count();
         let explained = count as f64 / parts.labels.len() as f64;
         let verdict = match explained {
-            _ if is_loop => Verdict::DoesNotFit,
-            share if share >= GOOD && recording.tactile.samples >= SHORT && novelty >= SIMILAR => {
-                Verdict::Good
-            }
+            _ if few_motions && novelty < LOOP => Verdict::DoesNotFit,
+            share if share >= GOOD && recording.tactile.samples >= SHORT && !few_motions => Verdict::Good,
             share if share >= DOUBTFUL => Verdict::Doubtful,
             _ => Verdict::DoesNotFit,
         };
         let cause = match verdict {
             Verdict::Good => None,
-            _ if is_loop => Some(REPETITION),
-            _ if explained >= GOOD && novelty < SIMILAR => Some(SIMILARITY),
+            _ if few_motions && novelty < LOOP => Some(REPETITION),
+            _ if explained >= GOOD && few_motions => Some(SIMILARITY),
             _ => Some(cause(&recording.tactile, is_noisy)),
         };
         Self { verdict, explained, novelty, cause }
@@ -187,8 +186,8 @@ pub fn estimate(
     tick();
     let parts = rigid_parts(tactile, *signed, &sensors);
     let novelty = novelty::novelty(tactile, *signed, &sensors);
-    let is_loop = novelty < LOOP && novelty::has_few_motions(tactile, *signed, &sensors);
-    let fit = Fit::new(&parts, recording, novelty, is_loop);
+    let few_motions = novelty < SIMILAR && novelty::has_few_motions(tactile, *signed, &sensors);
+    let fit = Fit::new(&parts, recording, novelty, few_motions);
     tick();
     let (parts, joints) = refine(tactile, *signed, parts, rng);
     tick();
@@ -273,7 +272,7 @@ mod tests {
                 unassigned: Vec::new(),
                 motions: BTreeMap::new(),
             };
-            Fit::new(&parts, &recording, novelty, novelty < LOOP)
+            Fit::new(&parts, &recording, novelty, novelty < SIMILAR)
         };
         assert_eq!(fit(SHORT, 0.1).verdict, Verdict::Good);
         assert_eq!(

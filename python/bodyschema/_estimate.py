@@ -28,7 +28,7 @@ class Fit:
     novelty : float
         The share of what is felt at a sample that the most similar other state leaves, 0 to 1, the median over samples. Below 0.001 the
         movement repeats itself; if it also consists of few motions, as one rhythm does, the verdict is "does not fit".
-        Below 0.1 it is doubtful at best.
+        With as few motions, it is doubtful at best below 0.1.
     cause : str or None
         What is likely to be the matter, unless the verdict is good.
     """
