@@ -106,8 +106,8 @@ pub struct Fit {
 }
 
 impl Fit {
-    /// Of parts before joints assign the sensors that no part explains. `few_motions`: whether it consists of
-    /// few motions, and comes back to similar states.
+    /// Of parts before joints assign the sensors that no part explains. `few_motions`: whether the movement
+    /// consists of few motions, and comes back to similar states.
     fn new(parts: &RigidParts, recording: &Recording, novelty: f64, few_motions: bool) -> Self {
         let is_noisy = 2 * recording.noisy > recording.sensors.len();
         let most = EXPLAINED[usize::from(is_noisy)];
