@@ -9,8 +9,6 @@ continues. Status: 0, or 2 on an error.
 
 import argparse
 import collections
-import csv
-import json
 import pathlib
 import sys
 import tempfile
@@ -20,7 +18,7 @@ try:
 except ModuleNotFoundError:
     sys.exit("repeats: needs NumPy")
 
-from estimated import ROOT, estimated, interval, run, write
+from estimated import ROOT, estimated, interval, read, run, write
 
 SEED, REPEATS = 4880000, 10
 # Seconds, and the noise as a share of the root mean square of each sensor.
@@ -40,7 +38,7 @@ def main():
     out.mkdir(parents=True, exist_ok=True)
     # What is finished, until all is.
     part = out / "repeats.csv.part"
-    rows = list(csv.DictReader(part.read_text().splitlines())) if part.exists() else []
+    rows = read(part) if part.exists() else []
     for seconds, noise in RECORDINGS:
         for body in sorted(file.stem for file in (ROOT / "bodies").glob("*.toml")):
             if not any((row["body"], row["seconds"], row["noise"]) == (body, str(seconds), str(noise)) for row in rows):
@@ -76,7 +74,7 @@ def measured(body, seconds, noise):
 
 def things(folder):
     """Each sensor, part and joint of an estimate: the repeats that found it again, and whether it is right."""
-    table = lambda file: list(csv.DictReader((folder / file).read_text().splitlines()))
+    table = lambda file: read(folder / file)
     truth = {int(row["sensor"]): int(row["part"]) for row in table("felt/labels.csv")}
     joined = {frozenset((int(row["child"]), int(row["parent"]))) for row in table("felt/tree.csv")}
     parts = table("found/parts.csv")

@@ -52,7 +52,7 @@ pub fn repeats(
     let mut parts: BTreeMap<usize, usize> = labels.iter().map(|label| (*label, 0)).collect();
     let mut edges = vec![0; tree.len()];
     for _ in 0..count {
-        let (other, other_tree) = found_again(&resampled(&recording.tactile, rng), recording.signed);
+        let (other, other_tree) = found_again(resampled(&recording.tactile, rng), recording.signed);
         let same = Matching::new(labels, &other);
         for (at, times) in sensors.iter_mut().enumerate() {
             let is_on_it = other[at].is_some() && same.to.get(&labels[at]) == other[at].as_ref();
@@ -76,10 +76,10 @@ pub fn repeats(
 }
 
 /// The part of each sensor, or `None` if it tells nothing, and the tree. Too few sensors have no parts.
-fn found_again(tactile: &Tactile, signed: bool) -> (Vec<Option<usize>>, Vec<Edge>) {
+fn found_again(tactile: Tactile, signed: bool) -> (Vec<Option<usize>>, Vec<Edge>) {
     let mut labels = vec![None; tactile.sensors()];
     // Saturated values of the recording are missing already.
-    let usable = usable_with(tactile.clone(), true);
+    let usable = usable_with(tactile, true);
     if usable.sensors.len() < MIN_SENSORS {
         return (labels, Vec::new());
     }

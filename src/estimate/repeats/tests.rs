@@ -51,7 +51,7 @@ fn parts_have_counterparts_by_their_sensors_whatever_they_are_called() {
 #[test]
 fn times_at_which_nothing_is_felt_have_no_parts() {
     let silent = Tactile { samples: 200, pressures: vec![0.0; 20 * 200] };
-    assert_eq!(found_again(&silent, false), (vec![None; 20], vec![]));
+    assert_eq!(found_again(silent, false), (vec![None; 20], vec![]));
 }
 
 #[test]
