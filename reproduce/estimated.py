@@ -44,6 +44,24 @@ def estimated(felt, found, seed, *options):
     }
 
 
+def noisy(pressures, noise, random):
+    """With Gaussian noise, whose standard deviation is this share of the root mean square of each sensor."""
+    return pressures + noise * (pressures**2).mean(0) ** 0.5 * random.standard_normal(pressures.shape)
+
+
+def resumed(table, columns, jobs, measured):
+    """Write the rows of all jobs to a table, and return them. A run that was stopped continues after its last job."""
+    part = table.with_suffix(".csv.part")
+    rows = read(part) if part.exists() else []
+    for job in jobs:
+        named = {key: str(value) for key, value in job.items()}
+        if not any(named.items() <= row.items() for row in rows):
+            rows += measured(**job)
+            write(part, columns, rows)
+    part.replace(table)
+    return rows
+
+
 def read(table):
     """The rows of a CSV file."""
     with open(table, newline="") as file:

@@ -7,10 +7,7 @@ minutes on two cores; a run that was stopped continues. Status: 0, or 2 on an er
 """
 
 import argparse
-import csv
 import pathlib
-import re
-import subprocess
 import sys
 import tempfile
 
@@ -19,7 +16,7 @@ try:
 except ModuleNotFoundError:
     sys.exit("gaps: needs NumPy")
 
-from estimated import PROGRAM, ROOT, interval, write
+from estimated import ROOT, estimated, interval, noisy, resumed, run
 
 BODIES, SEEDS = ["star", "tee", "quadruped"], range(4830001, 4830005)
 COLUMNS = ["revision", "body", "seed", "gaps", "missing", "sensors_left", "ari", "tree_right"]
@@ -54,9 +51,9 @@ def saturated(share):
     return lambda x, labels, random: np.minimum(x, np.quantile(x, 1 - share, axis=0))
 
 
-def noisy(then):
-    """Noise of a tenth of the root mean square of each sensor, as the study of all bodies has it."""
-    return lambda x, labels, random: then(x + 0.1 * np.sqrt((x**2).mean(0)) * random.standard_normal(x.shape), labels, random)
+def with_noise(then):
+    """Noise of a tenth, as the study of all bodies has it."""
+    return lambda x, labels, random: then(noisy(x, 0.1, random), labels, random)
 
 
 CONDITIONS = {
@@ -69,8 +66,8 @@ CONDITIONS = {
     "a stretch of 20 % of each sensor": stretches(0.2),
     "a stretch of 20 % of one part": limb(0.2),
     "the largest 2 % of each sensor cut": saturated(0.02),
-    "noise of a tenth, no gaps": noisy(lambda x, labels, random: x),
-    "noise of a tenth, 20 % scattered": noisy(scattered(0.2)),
+    "noise of a tenth, no gaps": with_noise(lambda x, labels, random: x),
+    "noise of a tenth, 20 % scattered": with_noise(scattered(0.2)),
 }
 
 
@@ -79,15 +76,8 @@ def main():
     parser.add_argument("--out", type=pathlib.Path, default=ROOT / "docs" / "shown" / "gaps", help="folder to write to")
     out = parser.parse_args().out
     out.mkdir(parents=True, exist_ok=True)
-    # What is finished, until all is.
-    part = out / "gaps.csv.part"
-    rows = list(csv.DictReader(part.read_text().splitlines())) if part.exists() else []
-    for body in BODIES:
-        for seed in SEEDS:
-            if not any((row["body"], row["seed"]) == (body, str(seed)) for row in rows):
-                rows += measured(body, seed)
-                write(part, COLUMNS, rows)
-    part.replace(out / "gaps.csv")
+    jobs = [dict(body=body, seed=seed) for body in BODIES for seed in SEEDS]
+    rows = resumed(out / "gaps.csv", COLUMNS, jobs, measured)
     (out / "README.md").write_text(page(rows))
     return 0
 
@@ -97,33 +87,19 @@ def measured(body, seed):
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         (folder / "short.toml").write_text("[physics]\nduration = 1000.0\n")
-        run(PROGRAM, "simulate", "--body", ROOT / "bodies" / f"{body}.toml", "--settings", folder / "short.toml", "--seed", seed,
+        run("simulate", "--body", ROOT / "bodies" / f"{body}.toml", "--settings", folder / "short.toml", "--seed", seed,
             "--out", folder / "moved")
         x = np.load(folder / "moved" / "tactile.npy")
         labels = np.genfromtxt(folder / "moved" / "labels.csv", delimiter=",", names=True)["part"].astype(int)
         for at, (condition, take) in enumerate(CONDITIONS.items()):
             random = np.random.default_rng([seed, at if "noise" not in condition else 0])
-            np.save(folder / "own.npy", take(x, labels, random).astype(np.float32))
-            said = run(PROGRAM, "estimate", folder / "own.npy", "--labels", folder / "moved" / "labels.csv", "--tree",
-                       folder / "moved" / "tree.csv", "--out", folder / "found", "--force")
-            ari, tree = re.search(r"adjusted Rand index (\S+), true tree (recovered|not recovered)", said).groups()
-            summary = (folder / "found" / "summary.json").read_text()
-            number = lambda key: int(re.search(rf'"{key}": (\d+)', summary)[1])
-            left = number("sensors") - number("dropped")
-            missing = number("missing") / (left * number("samples"))
-            revision = re.search(r'"revision": "(.*?)"', summary)[1]
-            row = [revision, body, seed, condition, f"{missing:.4f}", left, ari, "true" if tree == "recovered" else "false"]
+            np.save(folder / "moved" / "tactile.npy", take(x, labels, random).astype(np.float32))
+            summary, truth = estimated(folder / "moved", folder / "found", seed)
+            left = summary["sensors"] - summary["dropped"]
+            missing = summary["missing"] / (left * summary["samples"])
+            row = [summary["revision"], body, seed, condition, f"{missing:.4f}", left, truth["ari"], truth["tree_right"]]
             print(*row, flush=True)
             yield dict(zip(COLUMNS, map(str, row)))
-
-
-def run(*command):
-    command = [str(word) for word in command]
-    done = subprocess.run(command, capture_output=True, text=True)
-    if done.returncode not in (0, 1):
-        print(f"gaps: {' '.join(command)}: {done.stderr.strip()}", file=sys.stderr)
-        sys.exit(2)
-    return done.stdout
 
 
 def page(rows):

@@ -18,7 +18,7 @@ try:
 except ModuleNotFoundError:
     sys.exit("repeats: needs NumPy")
 
-from estimated import ROOT, estimated, interval, read, run, write
+from estimated import ROOT, estimated, interval, noisy, read, resumed, run
 
 SEED, REPEATS = 4880000, 10
 # Seconds, and the noise as a share of the root mean square of each sensor.
@@ -36,15 +36,9 @@ def main():
     parser.add_argument("--out", type=pathlib.Path, default=ROOT / "docs" / "shown" / "repeats", help="folder to write to")
     out = parser.parse_args().out
     out.mkdir(parents=True, exist_ok=True)
-    # What is finished, until all is.
-    part = out / "repeats.csv.part"
-    rows = read(part) if part.exists() else []
-    for seconds, noise in RECORDINGS:
-        for body in sorted(file.stem for file in (ROOT / "bodies").glob("*.toml")):
-            if not any((row["body"], row["seconds"], row["noise"]) == (body, str(seconds), str(noise)) for row in rows):
-                rows += measured(body, seconds, noise)
-                write(part, COLUMNS, rows)
-    part.replace(out / "repeats.csv")
+    bodies = sorted(file.stem for file in (ROOT / "bodies").glob("*.toml"))
+    jobs = [dict(body=body, seconds=seconds, noise=noise) for seconds, noise in RECORDINGS for body in bodies]
+    rows = resumed(out / "repeats.csv", COLUMNS, jobs, measured)
     (out / "README.md").write_text(page(rows))
     return 0
 
@@ -59,8 +53,7 @@ def measured(body, seconds, noise):
         if noise > 0:
             touch = np.load(folder / "felt" / "tactile.npy")
             random = np.random.default_rng([SEED, seconds])
-            touch = touch + noise * np.sqrt((touch**2).mean(0)) * random.standard_normal(touch.shape)
-            np.save(folder / "felt" / "tactile.npy", touch.astype(np.float32))
+            np.save(folder / "felt" / "tactile.npy", noisy(touch, noise, random).astype(np.float32))
         summary, _ = estimated(folder / "felt", folder / "found", SEED, "--repeats", REPEATS)
         counts = collections.Counter()
         for what, repeated, right in things(folder):
