@@ -129,6 +129,11 @@ impl Fit {
         };
         Self { verdict, explained, novelty, cause }
     }
+
+    /// Whether parts and tree mean anything: the verdict is good or doubtful.
+    pub fn fits(&self) -> bool {
+        self.verdict != Verdict::DoesNotFit
+    }
 }
 
 impl fmt::Display for Fit {

@@ -18,7 +18,8 @@ from importlib.metadata import PackageNotFoundError, version as _version
 
 from ._bodies import BodyWarning, import_body
 from ._bodyschema import BODIES, REVISION, SEED
-from ._estimate import Estimate, Fit, Joints, estimate, estimate_tree
+from ._estimate import Estimate, Fit, estimate
+from ._joints import Joints, estimate_tree
 from ._reading import RecordingWarning, read_touch
 from ._placement import Placement, place_joints
 from ._schema import Posterior, dpgmm, dpgmm_lj

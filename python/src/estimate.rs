@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use bodyschema::estimate::{
-    Estimate, Repeats, TooFewSensors, Verdict, estimate as estimate_of, repeats as repeats_of,
+    Estimate, Repeats, TooFewSensors, estimate as estimate_of, repeats as repeats_of,
 };
 use bodyschema::files::FrontEnd;
 use bodyschema::files::touch::{Column, Decimal, Format, Recorded, Separator, TimeColumn, read_recorded};
@@ -122,7 +122,7 @@ pub(crate) fn estimate<'py>(
         let recording = cleaned(tactile, said);
         let rng = &mut stream(seed, 1, "co-motion", 0);
         let found = estimate_of(&recording, &levels, rng, &|| steps.tick())?;
-        let shows_tree = force || found.fit.verdict != Verdict::DoesNotFit;
+        let shows_tree = force || found.fit.fits();
         let again = (repeats > 0 && shows_tree)
             .then(|| repeats_of(&recording, &found, repeats, rng, &|| steps.tick()));
         Ok((recording, found, again))
@@ -133,7 +133,7 @@ pub(crate) fn estimate<'py>(
     became(&facts, &recording)?;
     let Estimate { fit, parts, joints, mapped, distances } = found;
     facts.set_item("verdict", fit.verdict.to_string())?;
-    facts.set_item("fits", fit.verdict != Verdict::DoesNotFit)?;
+    facts.set_item("fits", fit.fits())?;
     facts.set_item("explained", fit.explained)?;
     facts.set_item("novelty", fit.novelty)?;
     facts.set_item("cause", fit.cause)?;

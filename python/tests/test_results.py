@@ -118,7 +118,7 @@ def test_generators_give_seeds():
     assert again.seed == seeds[4]
 
 
-MODULES = ["", "._estimate", "._simulate", "._stages", "._schema", ".cluster"]
+MODULES = ["", "._estimate", "._joints", "._simulate", "._stages", "._schema", ".cluster"]
 
 
 @pytest.mark.parametrize("name", MODULES)

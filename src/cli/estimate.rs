@@ -16,7 +16,7 @@ use super::repeats;
 use super::touch::TouchFile;
 use super::tree::{self, refuse_truth};
 use crate::analysis::statistics::mean;
-use crate::estimate::{self, Repeats, Verdict, estimate};
+use crate::estimate::{self, Repeats, estimate};
 use crate::files::tables::{write_rows, write_rows_of};
 use crate::files::{prepare_folder, write_text};
 use crate::numerics::rng::stream;
@@ -145,22 +145,17 @@ impl Estimate {
             placement::refuse_others(out)?;
         }
         prepare_folder(out)?;
-        if let Some((first, fault)) = recording.dropped.first() {
-            eprintln!(
-                "bodyschema: {name}: {} of {count} sensors are left out (the first, {first}, is {fault}); see dropped.csv",
-                recording.dropped.len()
-            );
-        }
+        warn_of_dropped(&name, count, &recording.dropped);
         let bar = progress(3 + self.repeats, "estimate".to_owned());
         let mut rng = stream(seed, 1, "co-motion", 0);
         let found = estimate(&recording, &settings.quantise, &mut rng, &|| bar.inc(1))?;
-        let shows_tree = self.force || found.fit.verdict != Verdict::DoesNotFit;
+        let shows_tree = self.force || found.fit.fits();
         let count = if shows_tree { self.repeats as usize } else { 0 };
         let again =
             (count > 0).then(|| estimate::repeats(&recording, &found, count, &mut rng, &|| bar.inc(1)));
         bar.finish_and_clear();
         let against = truth.as_ref().map(|truth| AgainstTruth::new(&found, &recording.truth(truth)));
-        let summary = write(out, &found, again.as_ref(), &recording, (interval, seed), shows_tree, against)?;
+        write(out, &found, again.as_ref(), &recording, (interval, seed), shows_tree, against)?;
         let sites = sites.filter(|_| shows_tree).map(|sites| recording.of_sensors(&sites));
         let placed = placement::write(out, &recording, &found, sites.as_deref())?;
         say(found.fit.to_string())?;
@@ -173,25 +168,7 @@ impl Estimate {
         }
         let shown = Shown { name, interval, truth: truth.as_ref(), of: settings.map.of, seed };
         write_text(&out.join("report.html"), &page(&shown.estimated(&found, &recording)))?;
-        say(format!(
-            "{} parts of {} sensors over {} samples, in {}; open report.html there",
-            summary.parts,
-            recording.sensors.len(),
-            summary.samples,
-            out.display()
-        ))?;
-        if summary.parts == 1 {
-            let residual = mean(&found.parts.residuals).value.unwrap_or(0.0);
-            say(format!(
-                "no two parts can be distinguished: the residual variance of a single rigid motion is {:.1} %{}",
-                100.0 * residual,
-                if residual < 0.05 { "; no joint seems to move" } else { "" }
-            ))?;
-        }
-        tree::print(&found.joints, &found.parts.labels)?;
-        if let Some(again) = &again {
-            repeats::print(again, &found.joints.tree)?;
-        }
+        say_found(out, &found, again.as_ref(), &recording)?;
         placed.into_iter().try_for_each(say)?;
         if let Some(truth) = truth {
             let score = score(&found.parts.labels, &found.joints.tree, &recording.truth(&truth), 1.0);
@@ -199,6 +176,42 @@ impl Estimate {
         }
         Ok(ExitCode::SUCCESS)
     }
+}
+
+/// Says how many sensors are left out, if any are.
+fn warn_of_dropped(name: &str, count: usize, dropped: &[(usize, Fault)]) {
+    if let Some((first, fault)) = dropped.first() {
+        eprintln!(
+            "bodyschema: {name}: {} of {count} sensors are left out (the first, {first}, is {fault}); see dropped.csv",
+            dropped.len()
+        );
+    }
+}
+
+/// Says which parts and tree were found, and how often again.
+fn say_found(
+    out: &Path,
+    found: &estimate::Estimate,
+    again: Option<&Repeats>,
+    recording: &Recording,
+) -> Result<()> {
+    let parts = found.joints.ranks.len();
+    say(format!(
+        "{parts} parts of {} sensors over {} samples, in {}; open report.html there",
+        recording.sensors.len(),
+        recording.tactile.samples,
+        out.display()
+    ))?;
+    if parts == 1 {
+        let residual = mean(&found.parts.residuals).value.unwrap_or(0.0);
+        say(format!(
+            "no two parts can be distinguished: the residual variance of a single rigid motion is {:.1} %{}",
+            100.0 * residual,
+            if residual < 0.05 { "; no joint seems to move" } else { "" }
+        ))?;
+    }
+    tree::print(&found.joints, &found.parts.labels)?;
+    again.map_or(Ok(()), |again| repeats::print(again, &found.joints.tree))
 }
 
 /// Writes all files, or those without the tree; then, a tree and a report of before are removed.
@@ -210,7 +223,7 @@ fn write(
     (interval, seed): (Option<f64>, u64),
     shows_tree: bool,
     truth: Option<AgainstTruth>,
-) -> Result<Summary> {
+) -> Result<()> {
     let Recording { tactile, sensors, dropped, lost_samples, missing, noisy, signed, .. } = recording;
     let parts = sensors.iter().enumerate().map(|(at, &sensor)| {
         let (next_part, next_residual) = found.parts.alternatives[at].first().copied().unzip();
@@ -252,6 +265,5 @@ fn write(
         revision: env!("BODYSCHEMA_REVISION"),
         truth,
     };
-    write_text(&out.join("summary.json"), &serde_json::to_string_pretty(&summary)?)?;
-    Ok(summary)
+    Ok(write_text(&out.join("summary.json"), &serde_json::to_string_pretty(&summary)?)?)
 }

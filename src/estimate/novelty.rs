@@ -9,7 +9,7 @@ use faer::linalg::matmul::matmul;
 use faer::{Accum, Par};
 
 use crate::numerics::eigen::largest;
-use crate::stages::rigid_parts::{median, stratified};
+use crate::stages::rigid_parts::{Roots, median, stratified};
 use crate::stages::sense::Tactile;
 
 /// Samples that are compared, spread over all.
@@ -29,8 +29,8 @@ const EXPLAINED: f64 = 0.99;
 /// In: M × T pressures, whether negative ones are signal, and some of the sensors. 1 if nothing moves.
 pub(super) fn novelty(tactile: &Tactile, signed: bool, sensors: &[usize]) -> f64 {
     let roots = roots(tactile, signed, sensors);
-    let size = |t: usize| roots.col(t).norm_l2();
-    let sizes: Vec<f64> = (0..roots.ncols()).map(size).collect();
+    let size = |t: usize| roots.row(t).norm_l2();
+    let sizes: Vec<f64> = (0..roots.nrows()).map(size).collect();
     let least = REST * median(sizes.clone());
     let moving: Vec<(usize, f64)> = sizes.into_iter().enumerate().filter(|(_, size)| *size > least).collect();
     if moving.is_empty() {
@@ -38,7 +38,7 @@ pub(super) fn novelty(tactile: &Tactile, signed: bool, sensors: &[usize]) -> f64
     }
     let states = Mat::from_fn(sensors.len(), moving.len(), |at, sample| {
         let (t, size) = moving[sample];
-        roots[(at, t)] / size
+        roots[(t, at)] / size
     });
     let mut cosines = Mat::zeros(moving.len(), moving.len());
     matmul(cosines.as_mut(), Accum::Replace, states.transpose(), states.as_ref(), 1.0, Par::Seq);
@@ -57,32 +57,31 @@ pub(super) fn novelty(tactile: &Tactile, signed: bool, sensors: &[usize]) -> f64
 /// Whether few motions explain nearly all of what some sensors feel. In: as for [`novelty`].
 pub(super) fn has_few_motions(tactile: &Tactile, signed: bool, sensors: &[usize]) -> bool {
     let mut roots = roots(tactile, signed, sensors);
-    for row in roots.row_iter_mut() {
-        let size = row.norm_l2().max(f64::MIN_POSITIVE);
-        row.iter_mut().for_each(|root| *root /= size);
+    for own in roots.col_iter_mut() {
+        let size = own.norm_l2().max(f64::MIN_POSITIVE);
+        own.iter_mut().for_each(|root| *root /= size);
     }
     let mut products = Mat::zeros(sensors.len(), sensors.len());
-    matmul(products.as_mut(), Accum::Replace, roots.as_ref(), roots.transpose(), 1.0, Par::Seq);
+    matmul(products.as_mut(), Accum::Replace, roots.transpose(), roots.as_ref(), 1.0, Par::Seq);
     let all: f64 = (0..sensors.len()).map(|at| products[(at, at)]).sum();
     // A quarter of the components of few sensors, which have few in any case.
     let first = largest(products.as_ref(), FEW.min(sensors.len() / 4));
     first.is_ok_and(|first| first.values.iter().sum::<f64>() >= EXPLAINED * all)
 }
 
-/// Roots of the pressures on some sensors at some samples, sensors × samples. Where one is missing, the one before.
+/// Roots of the pressures on some sensors at some samples, samples × sensors. Where one is missing, the one before.
 fn roots(tactile: &Tactile, signed: bool, sensors: &[usize]) -> Mat<f64> {
-    let series: Vec<&[f32]> = tactile.series().collect();
+    let all: Vec<&[f32]> = tactile.series().collect();
+    let series: Vec<&[f32]> = sensors.iter().map(|&sensor| all[sensor]).collect();
     let samples: Vec<usize> = stratified(tactile.samples, MAX_SAMPLES).collect();
-    let mut roots = Mat::zeros(sensors.len(), samples.len());
-    for (at, &sensor) in sensors.iter().enumerate() {
+    let mut roots = Roots::at(&series, &samples, signed).values;
+    for own in roots.col_iter_mut() {
         let mut last = 0.0;
-        for (sample, &t) in samples.iter().enumerate() {
-            let pressure = f64::from(series[sensor][t]);
-            if !pressure.is_nan() {
-                last =
-                    if signed { pressure.signum() * pressure.abs().sqrt() } else { pressure.max(0.0).sqrt() };
+        for root in own.iter_mut() {
+            if root.is_nan() {
+                *root = last;
             }
-            roots[(at, sample)] = last;
+            last = *root;
         }
     }
     roots

@@ -223,7 +223,8 @@ fn about(design: &Design, rows: &[Row]) -> String {
          its own for each sensor, and skins that cover the ends of the parts. `reproduce/seeds.toml` says which revision \
          it ran with.\n\n\
          {} bodies; simulations of each {each}at each p: {}; seed {}; chains of each mixture: {}. {resolved} \
-         `reproduce/bodies.sh` makes this page; each recording is a row of [recordings.csv](recordings.csv), each edge \
+         `bodyschema bodies --design DESIGN` makes such a page, and `reproduce/bodies.sh` that of the committed study. \
+         Each recording is a row of [recordings.csv](recordings.csv), each edge \
          of [edges.csv](edges.csv). How it works: [estimate.md](../../estimate.md).",
         design.bodies.len(),
         design.movements,
