@@ -10,7 +10,7 @@ SHOWN = ROOT / "docs" / "shown"
 # s: one sample, and how long a joint has one target or is locked (bodies.toml).
 INTERVAL, EPOCH = 0.1, 5.0
 # Bootstrap support, in percent, from one to below the other.
-BINS = {"50 to 80 %": (0.5, 0.8), "95 to 99 %": (0.95, 0.99), "100 %": (1.0, 2.0)}
+BINS = {"50 to 80 %": (0.5, 0.8), "80 to 95 %": (0.8, 0.95), "95 to 99 %": (0.95, 0.99), "100 %": (1.0, 2.0)}
 
 
 def tables():
@@ -26,7 +26,7 @@ def of_bodies():
         print("docs.py: the accuracy of `estimate` is skipped: docs/shown/bodies has no manifest; run reproduce/bodies.sh", file=sys.stderr)
         return {}
     facts = json.loads(manifest.read_text())
-    source = f"Seed {facts['seed']}, revision {facts['revision'][:7]}; `reproduce/bodies.sh`."
+    source = f"Seed {facts['seed']}; `reproduce/bodies.sh` of revision {facts['revision'][:7]}."
     return {
         ("README.md", "accuracy"): [*shortest(recordings), "", f"[Held out](docs/estimate.md#accuracy): {source[0].lower()}{source[1:]}"],
         ("docs/own-data.md", "lengths"): [*by_length(recordings), "", source],
@@ -40,17 +40,20 @@ def of_recordings():
     moved = read(SHOWN / "recordings" / "recordings.csv")
     held_out = [row for row in moved if row["use"] == "held out"]
     right = sum(row["tree_right"] == "true" for row in held_out)
-    found = f"Of {len(held_out)} held-out [recorded movements](docs/own-data.md#recorded-movements), {right} trees were right."
+    low, high = wilson(right, len(held_out))
     source = f"Revision {moved[0]['revision'][:7]}; `reproduce/recordings.py`."
+    found = (f"Of {len(held_out)} short held-out [recorded movements](docs/own-data.md#recorded-movements), {right} trees were right "
+             f"({100 * low:.0f} to {100 * high:.0f} %).")
     return {("README.md", "recorded"): [found], ("docs/own-data.md", "recorded"): [*recorded(moved, held_out), "", source]}
 
 
 def shortest(recordings):
     rows = [("100,000 samples", 100_000, 0.0), ("10,000 samples", 10_000, 0.0), ("1,000 samples", 1_000, 0.0),
             ("100,000 samples, noise of a tenth", 100_000, 0.1)]
-    lines = ["| simulated random movement, 15 bodies | trees right, p = 0.5 | 95 % interval | n |", "|---|---|---|---|"]
+    coordinations = ", ".join(f"{p:g}" for p in sorted({float(row["coordination"]) for row in recordings}))
+    lines = [f"| simulated random movement, 15 bodies, p of {coordinations} | trees right | 95 % interval | n |", "|---|---|---|---|"]
     for name, samples, noise in rows:
-        own = [row for row in of(recordings, samples, noise) if float(row["coordination"]) == 0.5]
+        own = of(recordings, samples, noise)
         share, low, high = ends(own, "tree_right")
         lines.append(f"| {name} | {share} % | {low} to {high} % | {len(own)} |")
     return lines
@@ -115,7 +118,8 @@ def recorded(moved, held_out):
         f"- **Parts**: the mean adjusted Rand index is {mean(moved)} (n = {len(moved)}). In the {len(held_out)} that were held out it is "
         f"{mean(held_out)}.",
         f"- **Trees** were right in {right(moved)}, and in {right(held_out)} that were held out.",
-        f"- **Long recordings work**: of those with at least 1,000 samples, {right(long)} trees are right, and of shorter ones {right(short)}.",
+        f"- **By length**: of those with at least 1,000 samples, {right(long)} trees are right, and of shorter ones {right(short)}. "
+        f"{sum(row['use'] == 'held out' for row in long) or 'None'} of the long ones {'was' if len(long) == 1 else 'were'} held out.",
     ]
 
 
