@@ -10,7 +10,6 @@ import argparse
 import json
 import math
 import pathlib
-import shutil
 import sys
 import textwrap
 import tomllib
@@ -73,9 +72,7 @@ def main():
     if around:
         write(arguments.out / "near.csv", list(around[0]), around)
     picture(arguments.out / "shares.svg", [row for row in shares if row["part"] == "multiverse" and row["group"] == "all"])
-    for name in ("variance.csv", "joint.csv"):
-        shutil.copy(arguments.folder / "multiverse" / name, arguments.out / name)
-    shutil.copy(arguments.folder / "multiverse" / "figures" / "tree-accuracy.svg", arguments.out / "tree-accuracy.svg")
+    curve(arguments.out / "tree-accuracy.svg", whole)
     rates = distribution(whole)
     write(arguments.out / "distribution.csv", list(rates), [rates])
     (arguments.out / "explorer.html").write_text(explorer(chosen, whole))
@@ -266,16 +263,13 @@ def model(found):
 
 def picture(file, rows):
     """For each claim the shares of the configurations that cannot judge it, in which it fails, and in which it holds."""
-    matplotlib.use("svg")
-    from matplotlib import pyplot
-
-    matplotlib.rcParams |= {"svg.hashsalt": "multiverse", "svg.fonttype": "none", "font.family": "sans-serif"}
     names = [label(row["claim"]) for row in rows]
     parts = [
         ("holds", "#1b7837", [row["holds"] / row["n"] for row in rows]),
         ("does not hold", "#b2182b", [(row["judged"] - row["holds"]) / row["n"] for row in rows]),
         ("cannot be judged", "#d9d9d9", [1 - row["judged"] / row["n"] for row in rows]),
     ]
+    pyplot = plotting()
     figure, axes = pyplot.subplots(figsize=(9, 0.42 * len(rows) + 1), layout="constrained")
     left = np.zeros(len(rows))
     for name, colour, widths in parts:
@@ -287,6 +281,44 @@ def picture(file, rows):
     axes.spines[["top", "right"]].set_visible(False)
     figure.savefig(file, metadata={"Date": None})
     pyplot.close(figure)
+
+
+def curve(file, part):
+    """A specification curve (Simonsohn, Simmons and Nelson 2020): all tree accuracies by size, with their intervals, and beneath them the
+    choices that they come from."""
+    told = np.flatnonzero(~np.isnan(part.values[HEADLINE]))
+    told = told[np.argsort(part.values[HEADLINE][told], kind="stable")]
+    rates, ends = 100 * part.values[HEADLINE][told], 100 * part.ends[HEADLINE][told]
+    options = [(at, option) for at in range(len(part.factors)) if part.factors[at] != "ARI of 1.00" for option in range(len(part.labels[at]))]
+    names = [f"{part.factors[at]}: {textwrap.shorten(part.labels[at][option], 40, placeholder=' …')}" for at, option in options]
+    pyplot = plotting()
+    figure, (above, below) = pyplot.subplots(
+        2, figsize=(9, 3 + 0.14 * len(options)), sharex=True, layout="constrained", height_ratios=[3, 0.14 * len(options)])
+    places = np.arange(1, len(told) + 1)
+    above.axhspan(*(100 * end for end in part.accepted[HEADLINE]), color="#c7e9c0", label="accepted range")
+    above.axhline(100 * published_rate()["published"], color="black", linestyle="--", linewidth=1, label="published")
+    above.vlines(places, *ends.T, color="#bdbdbd", linewidth=1, label="95 % interval")
+    above.plot(places, rates, ".", color="#2166ac", markersize=4, label="tree accuracy")
+    above.set(ylabel="tree accuracy, %", ylim=(-3, 103))
+    above.legend(ncols=4, loc="lower center", bbox_to_anchor=(0.5, 1), frameon=False)
+    for row, (at, option) in enumerate(options):
+        own = places[part.codes[told, at] == option]
+        below.plot(own, np.full(len(own), row), "|", color="#636363", markersize=5)
+    below.set_yticks(range(len(options)), names, fontsize=6)
+    below.set(ylim=(len(options) - 0.5, -0.5), xlabel=f"{len(told)} replications with eligible samples, by tree accuracy")
+    for axes in (above, below):
+        axes.spines[["top", "right"]].set_visible(False)
+    figure.savefig(file, metadata={"Date": None})
+    pyplot.close(figure)
+
+
+def plotting():
+    """pyplot, for SVG files that are the same each time."""
+    matplotlib.use("svg")
+    from matplotlib import pyplot
+
+    matplotlib.rcParams |= {"svg.hashsalt": "multiverse", "svg.fonttype": "none", "font.family": "sans-serif"}
+    return pyplot
 
 
 def label(claim):
@@ -353,14 +385,13 @@ def page(parts, shares, same, choices, around, questions, errors):
         "",
         *table(["choice", "n", "tree accuracy: judged, holds", *(f"{name}: judged, holds" for name in TOGETHER)], by_choice(choices)),
         "",
-        "How much each choice and each pair of choices decides of the variance of a claim, by a linear model:",
-        "[variance.csv](variance.csv).",
-        "",
         "## Where does the published number lie?",
         "",
         *distribution_in_words(whole),
         "",
         "![Specification curve of the tree accuracy](tree-accuracy.svg)",
+        "",
+        "All replications with eligible samples, by tree accuracy; beneath, a mark for each choice that they have.",
         "",
         "## How far from the default?",
         "",
