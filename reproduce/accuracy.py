@@ -40,10 +40,9 @@ def of_recordings():
     moved = read(SHOWN / "recordings" / "recordings.csv")
     held_out = [row for row in moved if row["use"] == "held out"]
     right = sum(row["tree_right"] == "true" for row in held_out)
-    low, high = wilson(right, len(held_out))
     source = f"Revision {moved[0]['revision'][:7]}; `reproduce/recordings.py`."
-    found = (f"Of {len(held_out)} short held-out [recorded movements](docs/own-data.md#recorded-movements), {right} trees were right "
-             f"({100 * low:.0f} to {100 * high:.0f} %).")
+    found = (f"Held-out [recorded movements](docs/own-data.md#recorded-movements) (at most {max(int(row['samples']) for row in held_out)} "
+             f"samples): trees right in {interval(right, len(held_out))}.")
     return {("README.md", "recorded"): [found], ("docs/own-data.md", "recorded"): [*recorded(moved, held_out), "", source]}
 
 
@@ -119,7 +118,7 @@ def recorded(moved, held_out):
         f"{mean(held_out)}.",
         f"- **Trees** were right in {right(moved)}, and in {right(held_out)} that were held out.",
         f"- **By length**: of those with at least 1,000 samples, {right(long)} trees are right, and of shorter ones {right(short)}. "
-        f"{sum(row['use'] == 'held out' for row in long) or 'None'} of the long ones {'was' if len(long) == 1 else 'were'} held out.",
+        f"Of the long ones, {sum(row['use'] == 'held out' for row in long)} were held out.",
     ]
 
 

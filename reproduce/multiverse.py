@@ -18,7 +18,7 @@ try:
     import matplotlib
     import numpy as np
     from scipy import stats
-    from replications import CLAIMS, HEADLINE, TOGETHER, Part, default, overrides
+    from replications import CLAIMS, HEADLINE, MEANING, TOGETHER, Part, default, overrides
     from surrogate import OVERRIDDEN, Chosen, Surrogate, knowing
 except ModuleNotFoundError as missing:
     sys.exit(f"multiverse: needs {missing.name}; run: pip install -r python/requirements.txt")
@@ -289,7 +289,7 @@ def curve(file, part):
     told = np.flatnonzero(~np.isnan(part.values[HEADLINE]))
     told = told[np.argsort(part.values[HEADLINE][told], kind="stable")]
     rates, ends = 100 * part.values[HEADLINE][told], 100 * part.ends[HEADLINE][told]
-    options = [(at, option) for at in range(len(part.factors)) if part.factors[at] != "ARI of 1.00" for option in range(len(part.labels[at]))]
+    options = [(at, option) for at in range(len(part.factors)) if part.factors[at] != MEANING for option in range(len(part.labels[at]))]
     names = [f"{part.factors[at]}: {textwrap.shorten(part.labels[at][option], 40, placeholder=' …')}" for at, option in options]
     pyplot = plotting()
     figure, (above, below) = pyplot.subplots(

@@ -14,7 +14,7 @@ try:
     import tomllib
 
     import numpy as np
-    from replications import Part, default, overrides, settings
+    from replications import MEANING, Part, default, overrides, settings
     from surrogate import OVERRIDDEN, Chosen
 except ModuleNotFoundError as missing:
     sys.exit(f"promising: needs Python 3.11 or newer; and {missing.name}: pip install -r python/requirements.txt")
@@ -90,7 +90,7 @@ class Space:
         self.overrides = overrides(part)
         self.usual = np.array(default(part))
         # By the literal meaning alone, which is the only one that was fitted.
-        self.fixed = part.factors.index("ARI of 1.00")
+        self.fixed = part.factors.index(MEANING)
 
     def drawn(self, count):
         random = np.random.default_rng(SEED)

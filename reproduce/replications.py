@@ -9,6 +9,8 @@ from estimated import ROOT, flat, read
 from surrogate import OVERRIDDEN
 
 HEADLINE = "tree-accuracy"
+# The factor that says which samples are eligible.
+MEANING = "ARI of 1.00"
 # What is said of several claims together: the two sides of the dependence on d, and of that on p.
 TOGETHER = {
     "dependence on d": ["tree-low-dimensions", "tree-high-dimensions"],
@@ -64,7 +66,7 @@ class Part:
 
     def is_literal(self):
         """Which configurations take an ARI of 1.00 for exactly 1."""
-        at = self.factors.index("ARI of 1.00")
+        at = self.factors.index(MEANING)
         return self.codes[:, at] == self.labels[at].index("exactly 1")
 
     def literal(self):
@@ -83,7 +85,7 @@ class Part:
     def same_verdicts(self):
         """In how many replications both meanings of an ARI of 1.00 give the same verdicts, and in how many there are both."""
         literal = self.is_literal()
-        at = self.factors.index("ARI of 1.00")
+        at = self.factors.index(MEANING)
         key = lambda row: (self.movements[row], *np.delete(self.codes[row], at), self.rows[row]["maps"])
         verdicts = lambda row: [(self.judged[claim][row], self.holds[claim][row]) for claim in CLAIMS]
         first = {key(row): verdicts(row) for row in np.flatnonzero(literal)}

@@ -106,25 +106,26 @@ pub struct Fit {
 }
 
 impl Fit {
-    /// Of parts before joints assign the sensors that no part explains. `few_motions`: whether the movement
+    /// Of parts before joints assign the sensors that no part explains. `comes_back`: whether the movement
     /// consists of few motions, and comes back to similar states.
-    fn new(parts: &RigidParts, recording: &Recording, novelty: f64, few_motions: bool) -> Self {
+    fn new(parts: &RigidParts, recording: &Recording, novelty: f64, comes_back: bool) -> Self {
         let is_noisy = 2 * recording.noisy > recording.sensors.len();
         let most = EXPLAINED[usize::from(is_noisy)];
         let own = parts.labels.iter().zip(&parts.residuals);
         let count =
             own.filter(|(label, residual)| !parts.unassigned.contains(label) && **residual <= most).count();
         let explained = count as f64 / parts.labels.len() as f64;
+        let repeats_itself = comes_back && novelty < LOOP;
         let verdict = match explained {
-            _ if few_motions && novelty < LOOP => Verdict::DoesNotFit,
-            share if share >= GOOD && recording.tactile.samples >= SHORT && !few_motions => Verdict::Good,
+            _ if repeats_itself => Verdict::DoesNotFit,
+            share if share >= GOOD && recording.tactile.samples >= SHORT && !comes_back => Verdict::Good,
             share if share >= DOUBTFUL => Verdict::Doubtful,
             _ => Verdict::DoesNotFit,
         };
         let cause = match verdict {
             Verdict::Good => None,
-            _ if few_motions && novelty < LOOP => Some(REPETITION),
-            _ if explained >= GOOD && few_motions => Some(SIMILARITY),
+            _ if repeats_itself => Some(REPETITION),
+            _ if explained >= GOOD && comes_back => Some(SIMILARITY),
             _ => Some(cause(&recording.tactile, is_noisy)),
         };
         Self { verdict, explained, novelty, cause }
@@ -191,8 +192,8 @@ pub fn estimate(
     tick();
     let parts = rigid_parts(tactile, *signed, &sensors);
     let novelty = novelty::novelty(tactile, *signed, &sensors);
-    let few_motions = novelty < SIMILAR && novelty::has_few_motions(tactile, *signed, &sensors);
-    let fit = Fit::new(&parts, recording, novelty, few_motions);
+    let comes_back = novelty < SIMILAR && novelty::has_few_motions(tactile, *signed, &sensors);
+    let fit = Fit::new(&parts, recording, novelty, comes_back);
     tick();
     let (parts, joints) = refine(tactile, *signed, parts, rng);
     tick();

@@ -98,7 +98,7 @@ def estimate_tree(
     random_state: RandomState = None,
     n_jobs: Optional[int] = -1,
 ) -> Joints:
-    """Estimate how known parts are joined. Where the parts are known, this is far more reliable than `estimate`.
+    """Estimate how known parts are joined. Where the parts are known, prefer it to `estimate`, which may get them wrong.
 
     Parameters
     ----------
