@@ -1,4 +1,4 @@
-//! Let exact clusters grow by sensors that they explain once they are in.
+//! Let settled clusters grow by sensors that they explain once they are in.
 //!
 //! The end of a cylinder alone feels the motion along its axis, which is no motion of the cluster before it is in.
 
@@ -17,21 +17,21 @@ const MAX_GROUP: usize = 24;
 const MIN_GROUP: usize = 2;
 
 impl Search {
-    /// Exact clusters with the sensors of no exact one that they explain: those that each fit, and those that fit only together.
+    /// Settled clusters with the sensors of no settled one that they explain: those that each fit, and those that fit only together.
     pub(super) fn grown(&mut self, clusters: Vec<Cluster>) -> Vec<Cluster> {
-        let separately = |search: &Self, exact: &[Cluster]| -> Vec<Option<Cluster>> {
-            let both = (exact, search.wanted(exact));
+        let separately = |search: &Self, settled: &[Cluster]| -> Vec<Option<Cluster>> {
+            let both = (settled, search.wanted(settled));
             both.into_par_iter().map(|(cluster, wanted)| search.with_as_many(cluster, &wanted)).collect()
         };
-        let together = |search: &Self, exact: &[Cluster]| -> Vec<Option<Cluster>> {
-            let rest = search.in_none(exact);
-            exact.par_iter().map(|cluster| search.with_group(cluster, &rest)).collect()
+        let together = |search: &Self, settled: &[Cluster]| -> Vec<Option<Cluster>> {
+            let rest = search.in_none(settled);
+            settled.par_iter().map(|cluster| search.with_group(cluster, &rest)).collect()
         };
         let clusters = self.grown_by(clusters, separately);
         self.grown_by(clusters, together)
     }
 
-    /// Exact clusters, each replaced by a larger one as long as there are any. Of two that want the same sensor, the one that leaves less
+    /// Settled clusters, each replaced by a larger one as long as there are any. Of two that want the same sensor, the one that leaves less
     /// gets it.
     fn grown_by(
         &mut self,
@@ -39,24 +39,24 @@ impl Search {
         larger: impl Fn(&Self, &[Cluster]) -> Vec<Option<Cluster>>,
     ) -> Vec<Cluster> {
         for _ in 0..MAX_ROUNDS {
-            let (mut exact, other): (Vec<Cluster>, Vec<Cluster>) =
-                clusters.into_iter().partition(|own| self.is_exact(own));
-            let found = larger(self, &exact);
+            let (mut settled, other): (Vec<Cluster>, Vec<Cluster>) =
+                clusters.into_iter().partition(|own| self.is_settled(own));
+            let found = larger(self, &settled);
             let mut found: Vec<(usize, Cluster)> =
                 found.into_iter().enumerate().filter_map(|(at, own)| Some((at, own?))).collect();
             found.sort_by(|(_, a), (_, b)| a.variance().total_cmp(&b.variance()));
             let has_grown = !found.is_empty();
             let mut taken: Vec<usize> = Vec::new();
             for (at, own) in found {
-                let is_new = |sensor: &&usize| exact[at].sensors.binary_search(sensor).is_err();
+                let is_new = |sensor: &&usize| settled[at].sensors.binary_search(sensor).is_err();
                 let new: Vec<usize> = own.sensors.iter().filter(is_new).copied().collect();
                 if !new.iter().any(|sensor| taken.contains(sensor)) {
                     taken.extend(new);
                     own.complete(&mut self.felt);
-                    exact[at] = own;
+                    settled[at] = own;
                 }
             }
-            clusters = exact.into_iter().chain(self.without(other, &taken)).collect();
+            clusters = settled.into_iter().chain(self.without(other, &taken)).collect();
             if !has_grown {
                 break;
             }

@@ -7,7 +7,7 @@
 //! subspace of rank six or less, where they are not censored at 0. That is motion segmentation (Costeira and Kanade 1998). The
 //! censored matrix is completed first (Saul 2022); affinities between sensors follow from its right singular vectors; and
 //! clusters of high affinity are merged by description length (Ma et al. 2007) and refined by K-subspaces (Bradley and
-//! Mangasarian 2000). Where the data are exact, clusters that one motion explains only nearly are separated into parts that hardly
+//! Mangasarian 2000). Without noise, clusters that one motion explains only nearly are separated into parts that hardly
 //! move against each other. `docs/estimate.md` has the theory; the stage [`joints`](super::joints) continues with the result.
 
 mod als;

@@ -43,12 +43,15 @@ pub(super) struct Search {
     pub(super) felt: Felt,
     /// Affinities between sensors, sensors × sensors, 0 to 1.
     pub(super) affinities: Mat<f64>,
+    /// Whether the model has no error that counts, however fast parts move. There may be noise. A [separation](super::separation) finds it
+    /// out.
+    pub(super) has_exact_model: bool,
 }
 
 impl Search {
     /// Of sensors that felt this, and that have these affinities, sensors × sensors, 0 to 1.
     pub(super) fn new(felt: Felt, affinities: Mat<f64>) -> Self {
-        Self { felt, affinities }
+        Self { felt, affinities, has_exact_model: false }
     }
 
     /// The clusters, each of one motion. Sensors that no motion explains are in none.

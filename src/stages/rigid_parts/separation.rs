@@ -1,11 +1,13 @@
-//! Separate parts that hardly move against each other, where the data are exact enough.
+//! Separate parts that hardly move against each other, without much noise.
 //!
 //! Iterated to its end, the motion of a rigid part leaves next to nothing of what is felt without noise. One motion of two parts
 //! leaves more, however little they move against each other. So clusters that one motion explains only nearly are taken apart into
 //! [pieces](super::pieces), sensors are assigned anew, pieces of one part are merged, and clusters [grow](super::growth) by the
 //! sensors that they explain once they are in. This is done for a coarse idea of what is exact, and then for a finer one. With noise no
-//! piece stands out, and the clusters stay as they are. So they do where the error of the model grows with the speed, because pressures
-//! are of a whole time step.
+//! piece stands out, and the clusters stay as they are.
+//!
+//! With pressures over a time step the model has an error. It grows with the speed, so that it is large at few samples. A cluster with such
+//! a residual is not taken apart.
 
 use std::collections::BTreeSet;
 
@@ -15,6 +17,7 @@ use super::cluster::{Cluster, MIN_FREEDOM};
 use super::halves::slow_share;
 use super::pieces::pieces;
 use super::search::{EXPLAINED, MIN_CLUSTER, MIN_SENSORS, Search};
+use super::weights::calm_share;
 
 /// What counts as exact, coarse and fine: the residual variance, and the iterations in which a motion is learned, and in which it comes
 /// to its end.
@@ -25,6 +28,9 @@ const BETTER: f64 = 0.2;
 const VANISHING: f64 = 0.25;
 /// Residual variance up to which the motion of a cluster counts as leaving nothing.
 const NOTHING: f64 = 1e-9;
+/// Below this, the residual of a cluster is an error of the model: the residual variance of the calmer half of the samples, as a share of
+/// that of the other half. Two parts move against each other at most times, and have more.
+const UNEVEN: f64 = 0.09;
 /// Most rounds of separating, assigning, merging and growing, and of growing in each.
 pub(super) const MAX_ROUNDS: usize = 3;
 
@@ -38,20 +44,35 @@ impl Search {
             let converged = |own: &Cluster| Cluster::converged(&self.felt, own.sensors.clone());
             let start: Vec<Cluster> =
                 found.as_deref().unwrap_or(clusters).par_iter().map(converged).collect();
-            if at == 0 && !self.are_clear(&start) {
+            if at == 0 {
+                self.has_exact_model = self.are_clear(&start);
+            } else if !quarter_leaves_nothing(&start) {
                 break;
             }
-            if start.iter().all(|own| self.is_exact(own)) {
-                continue;
+            if self.nothing_is_left_to_separate(&start) {
+                if self.has_exact_model {
+                    continue;
+                }
+                break;
             }
             let Some(more) = self.separated_at(start, EXPLAINED * before.0) else { break };
             (last, found) = (level, Some(more));
         }
         (self.felt.tolerance, self.felt.iterations) = last;
-        if let Some(found) = &mut found {
-            found.par_iter_mut().filter(|own| self.is_exact(own)).for_each(|own| own.learn_well(&self.felt));
+        let mut found = found?;
+        found.par_iter_mut().filter(|own| self.is_exact(own)).for_each(|own| own.learn_well(&self.felt));
+        if !self.has_exact_model {
+            // What a part may leave, and which rank it has, is then as before.
+            let (exact, mut other): (Vec<Cluster>, Vec<Cluster>) =
+                found.into_iter().partition(|own| self.is_exact(own));
+            (self.felt.tolerance, self.felt.iterations) = before;
+            other.par_iter_mut().for_each(|own| {
+                *own = Cluster::new(&self.felt, std::mem::take(&mut own.sensors));
+                own.learn_well(&self.felt);
+            });
+            found = [exact, other].concat();
         }
-        found
+        Some(found)
     }
 
     /// The same with one idea of what is exact. A cluster that leaves more than `nearly` is none.
@@ -83,7 +104,7 @@ impl Search {
     /// Whether most clusters are clear: of one part, which leaves nothing, or of several, which leave much, at all speeds. If the model
     /// has an error, a part leaves something between, which vanishes in slow samples. With noise no piece will be exact.
     fn are_clear(&self, clusters: &[Cluster]) -> bool {
-        let told: Vec<&Cluster> = clusters.iter().filter(|own| own.freedom >= MIN_FREEDOM).collect();
+        let told: Vec<&Cluster> = clusters.iter().filter(|own| is_told(own)).collect();
         let is_clear = |own: &&&Cluster| {
             own.variance() <= NOTHING
                 || !self.is_exact(own) && slow_share(&self.felt, &own.representatives) >= VANISHING
@@ -91,9 +112,25 @@ impl Search {
         !told.is_empty() && 2 * told.par_iter().filter(is_clear).count() >= told.len()
     }
 
+    /// Whether all clusters are settled. Without an exact model nothing is left either if none is: nothing then shows what a part leaves.
+    fn nothing_is_left_to_separate(&self, clusters: &[Cluster]) -> bool {
+        if self.has_exact_model {
+            return clusters.iter().all(|own| self.is_exact(own));
+        }
+        let told: Vec<&Cluster> = clusters.iter().filter(|own| is_told(own)).collect();
+        let settled = told.par_iter().filter(|own| self.is_settled(own)).count();
+        settled == 0 || settled == told.len()
+    }
+
+    /// Whether a cluster is of one part: it is exact, or the model is not, and what it leaves is an error of the model.
+    pub(super) fn is_settled(&self, cluster: &Cluster) -> bool {
+        let is_uneven = || is_told(cluster) && calm_share(&self.felt, cluster) < UNEVEN;
+        self.is_exact(cluster) || !self.has_exact_model && is_uneven()
+    }
+
     /// Whether one motion explains a cluster to the end, of enough that others would not do as well.
     pub(super) fn is_exact(&self, cluster: &Cluster) -> bool {
-        cluster.variance() <= EXPLAINED * self.felt.tolerance && cluster.freedom >= MIN_FREEDOM
+        cluster.variance() <= EXPLAINED * self.felt.tolerance && is_told(cluster)
     }
 
     fn complete(&mut self, clusters: &[Cluster]) {
@@ -104,10 +141,10 @@ impl Search {
         clusters.par_iter_mut().for_each(|own| own.learn_more(&self.felt));
     }
 
-    /// The pieces of each cluster that is not exact, and what is left of it as another one.
+    /// The pieces of each cluster that is not settled, and what is left of it as another one.
     fn apart(&self, clusters: Vec<Cluster>) -> Vec<Cluster> {
         let apart = |cluster: Cluster| {
-            if self.is_exact(&cluster) {
+            if self.is_settled(&cluster) {
                 return vec![cluster];
             }
             let (mut found, rest) = pieces(&self.felt, &cluster.sensors);
@@ -125,19 +162,19 @@ impl Search {
         (sensors.len() >= MIN_CLUSTER).then(|| Cluster::converged(&self.felt, sensors))
     }
 
-    /// With the pieces of all sensors that are in no exact cluster: those that were scattered over several.
+    /// With the pieces of all sensors that are in no settled cluster: those that were scattered over several.
     fn with_pieces_of_the_rest(&mut self, clusters: Vec<Cluster>) -> Vec<Cluster> {
-        let (mut exact, other): (Vec<Cluster>, Vec<Cluster>) =
-            clusters.into_iter().partition(|own| self.is_exact(own));
-        let rest = self.in_none(&exact);
+        let (mut settled, other): (Vec<Cluster>, Vec<Cluster>) =
+            clusters.into_iter().partition(|own| self.is_settled(own));
+        let rest = self.in_none(&settled);
         if rest.len() < MIN_SENSORS {
-            return exact.into_iter().chain(other).collect();
+            return settled.into_iter().chain(other).collect();
         }
         let (found, _) = pieces(&self.felt, &rest);
         self.complete(&found);
         let taken: Vec<usize> = found.iter().flat_map(|own| own.sensors.iter().copied()).collect();
-        exact.extend(found);
-        exact.into_iter().chain(self.without(other, &taken)).collect()
+        settled.extend(found);
+        settled.into_iter().chain(self.without(other, &taken)).collect()
     }
 
     /// The sensors that are in none of these clusters.
@@ -157,6 +194,17 @@ impl Search {
     }
 }
 
+/// Whether a cluster has enough informative values to tell whether one motion explains it. One motion explains any few sensors.
+fn is_told(cluster: &Cluster) -> bool {
+    cluster.freedom >= MIN_FREEDOM
+}
+
+/// Whether a quarter of the clusters leave nothing, so that a finer idea of what is exact may find more.
+fn quarter_leaves_nothing(clusters: &[Cluster]) -> bool {
+    let told: Vec<&Cluster> = clusters.iter().filter(|own| is_told(own)).collect();
+    4 * told.iter().filter(|own| own.variance() <= NOTHING).count() >= told.len()
+}
+
 /// The part whose motion explains a sensor best, if it leaves no more than this, or much less than that of any other does.
 pub(super) fn explaining(residuals: &[Vec<f64>], sensor: usize, most: f64) -> Option<usize> {
     let mut order: Vec<(f64, usize)> =
@@ -165,3 +213,6 @@ pub(super) fn explaining(residuals: &[Vec<f64>], sensor: usize, most: f64) -> Op
     let next = order.get(1).map_or(f64::INFINITY, |next| next.0);
     order.first().filter(|best| best.0 <= f64::max(most, BETTER * next)).map(|best| best.1)
 }
+
+#[cfg(test)]
+mod tests;

@@ -24,6 +24,17 @@ pub(super) fn weigh(felt: &mut Felt, clusters: &[Cluster]) {
     felt.sizes.iter_mut().zip(&divisors).for_each(|(size, divisor)| *size *= divisor);
 }
 
+/// How evenly the residual of a cluster is spread over time, 0 to 1: the mean residual variance of the half of the samples that have less of
+/// it, as a share of that of the other half. Samples without a degree of freedom do not count.
+pub(super) fn calm_share(felt: &Felt, cluster: &Cluster) -> f64 {
+    let told = by_sample(felt, cluster).into_iter().filter(|[_, freedom]| *freedom >= 1.0);
+    let mut variances: Vec<f64> = told.map(|[sum, freedom]| sum / freedom).collect();
+    variances.sort_unstable_by(f64::total_cmp);
+    let (calm, other) = variances.split_at(variances.len() / 2);
+    let mean = |of: &[f64]| of.iter().sum::<f64>() / of.len().max(1) as f64;
+    mean(calm) / mean(other).max(f64::MIN_POSITIVE)
+}
+
 /// At each sample the residual sum of squares of the informative roots of a cluster, and its degrees of freedom: those beyond the k that
 /// w takes.
 fn by_sample(felt: &Felt, cluster: &Cluster) -> Vec<[f64; 2]> {
@@ -88,6 +99,18 @@ mod tests {
             (root - super::tests::felt(0.3).roots.values[(10, 0)]).abs() < 1e-12,
             "the true size is kept"
         );
+    }
+
+    #[test]
+    fn an_error_of_few_samples_is_spread_unevenly_and_that_of_all_is_not() {
+        let share = |felt: &Felt| calm_share(felt, &converged(felt));
+        let few = share(&felt(0.3));
+        // As large at every sample.
+        let mut rng = stream(8, 1, "weights", 0);
+        let mut uniform = |rows, columns| Mat::from_fn(rows, columns, |_, _| rng.random_range(-1.0_f64..1.0));
+        let exact = product(uniform(600, 4).as_ref(), uniform(4, 30).as_ref());
+        let all = share(&felt_of(&(exact + uniform(600, 30) * faer::Scale(0.1))).0);
+        assert!(few < 0.05 && (0.3..1.0).contains(&all), "{few} and {all}");
     }
 
     #[test]

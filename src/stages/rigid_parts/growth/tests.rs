@@ -36,7 +36,9 @@ fn felt() -> Search {
     let completion = Completion::new(&roots);
     let felt =
         Felt { roots, completed: completion.velocities, sizes, tolerance: 2e-8, iterations: [24, 300] };
-    Search::new(felt, completion.affinities)
+    let mut search = Search::new(felt, completion.affinities);
+    search.has_exact_model = true;
+    search
 }
 
 #[test]
