@@ -1,0 +1,68 @@
+//! Test that a cluster is dispersed if its sensors are alike on two parts, and that parts are not.
+
+use faer::Mat;
+use rand::RngExt;
+
+use super::super::roots::product;
+use super::super::testing::felt_of;
+use super::*;
+use crate::numerics::rng::stream;
+
+/// Sensors of each of two parts on a hinge; the first eight do not feel how it turns.
+const SENSORS: usize = 24;
+const EITHER: usize = 8;
+
+/// What they feel: five components are those of both parts, and the sixth of each is its own. Then come as many of a third part,
+/// which moves with neither.
+fn search() -> Search {
+    let mut rng = stream(9, 1, "dispersal", 0);
+    let mut uniform = |rows, columns| Mat::from_fn(rows, columns, |_, _| rng.random_range(-1.0_f64..1.0));
+    let (both, own) = (uniform(600, 5), uniform(600, 2));
+    let other = product(uniform(600, 6).as_ref(), uniform(6, SENSORS).as_ref());
+    let loadings = uniform(6, 2 * SENSORS);
+    let of_hinge = |t: usize, sensor: usize| {
+        let common: f64 = (0..5).map(|k| both[(t, k)] * loadings[(k, sensor)]).sum();
+        let feels = sensor % SENSORS >= EITHER;
+        common + if feels { own[(t, sensor / SENSORS)] * loadings[(5, sensor)] } else { 0.0 }
+    };
+    let (felt, affinities) = felt_of(&Mat::from_fn(600, 3 * SENSORS, |t, sensor| {
+        if sensor < 2 * SENSORS { of_hinge(t, sensor) } else { other[(t, sensor - 2 * SENSORS)] }
+    }));
+    Search::new(felt, affinities)
+}
+
+fn part(at: usize) -> Vec<usize> {
+    (at * SENSORS..(at + 1) * SENSORS).collect()
+}
+
+fn dispersed(clusters: &[Vec<usize>]) -> Vec<Vec<usize>> {
+    let mut search = search();
+    let clusters = clusters.iter().map(|own| search.learned(own.clone())).collect();
+    let mut found: Vec<Vec<usize>> = search.dispersed(clusters).into_iter().map(|own| own.sensors).collect();
+    found.sort();
+    found
+}
+
+#[test]
+fn sensors_that_feel_the_same_on_both_parts_of_a_hinge_make_no_part() {
+    // With them are some of the second part that feel the hinge, so that the first does not explain all.
+    let either = (0..EITHER).chain(SENSORS..SENSORS + EITHER + 4).collect::<Vec<_>>();
+    let rest = |at: usize| part(at).into_iter().filter(|sensor| !either.contains(sensor)).collect();
+    let found = dispersed(&[rest(0), rest(1), either.clone(), part(2)]);
+    assert_eq!(found.len(), 3, "{found:?}");
+    assert!(found.contains(&part(2)));
+    for at in 0..2 {
+        // Those that feel the same on both may be on either.
+        let feels = part(at).split_off(EITHER);
+        assert!(found.iter().any(|own| feels.iter().all(|sensor| own.contains(sensor))), "{found:?}");
+    }
+}
+
+#[test]
+fn parts_stay() {
+    let parts: Vec<Vec<usize>> = (0..3).map(part).collect();
+    assert_eq!(dispersed(&parts), parts);
+    // Also a small one.
+    let few = [part(0), part(1), part(2).split_off(SENSORS - 6)];
+    assert_eq!(dispersed(&few), few);
+}
