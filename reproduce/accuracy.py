@@ -1,5 +1,5 @@
-"""How often `estimate` is right, as README.md, docs/own-data.md and docs/estimate.md show it: tables from docs/shown/bodies and
-docs/shown/recordings. Used by docs.py."""
+"""How often `estimate` is right, as README.md, docs/own-data.md and docs/estimate.md show it: tables from docs/shown/bodies,
+docs/shown/rhythmic and docs/shown/recordings. Used by docs.py."""
 
 import json
 import sys
@@ -15,18 +15,15 @@ BINS = {"50 to 80 %": (0.5, 0.8), "80 to 95 %": (0.8, 0.95), "95 to 99 %": (0.95
 
 def tables():
     """By file and name of its marks: the text between them."""
-    return {**of_bodies(), **of_recordings()}
+    return {**of_bodies(), **of_rhythmic_bodies(), **of_recordings()}
 
 
 def of_bodies():
     recordings = read(SHOWN / "bodies" / "recordings.csv")
     edges = read(SHOWN / "bodies" / "edges.csv")
-    manifest = SHOWN / "bodies" / "manifest.json"
-    if not manifest.is_file():
-        print("docs.py: the accuracy of `estimate` is skipped: docs/shown/bodies has no manifest; run reproduce/bodies.sh", file=sys.stderr)
+    source = made("bodies", "reproduce/bodies.sh")
+    if source is None:
         return {}
-    facts = json.loads(manifest.read_text())
-    source = f"Seed {facts['seed']}; `reproduce/bodies.sh` of revision {facts['revision'][:7]}."
     return {
         ("README.md", "accuracy"): [*shortest(recordings), "", f"[Held out](docs/estimate.md#accuracy): {source[0].lower()}{source[1:]}"],
         ("docs/own-data.md", "lengths"): [*by_length(recordings), "", source],
@@ -34,6 +31,28 @@ def of_bodies():
         ("docs/estimate.md", "accuracy"): [*pooled(recordings), "", source],
         ("docs/estimate.md", "support"): support(recordings, edges),
     }
+
+
+def of_rhythmic_bodies():
+    source = made("rhythmic", "bodyschema bodies --design reproduce/rhythmic-bodies.toml")
+    if source is None:
+        return {}
+    recordings = read(SHOWN / "rhythmic" / "recordings.csv")
+    lines = ["| movement | n | parts right | tree right | tree right, true parts given |", "|---|---|---|---|---|"]
+    for name, kind in [("one gait", "one-gait"), ("gaits that change", "changing-gaits")]:
+        own = [row for row in recordings if row["kind"] == kind]
+        lines.append(f"| {' | '.join([name, str(len(own)), *rates(own)])} |")
+    return {("docs/estimate.md", "rhythmic"): [*lines, "", source]}
+
+
+def made(folder, command):
+    """Seed and revision of a study of bodies in docs/shown, if its manifest is still there."""
+    manifest = SHOWN / folder / "manifest.json"
+    if not manifest.is_file():
+        print(f"docs.py: the accuracy of `estimate` is skipped: docs/shown/{folder} has no manifest; run {command}", file=sys.stderr)
+        return None
+    facts = json.loads(manifest.read_text())
+    return f"Seed {facts['seed']}; `{command}` of revision {facts['revision'][:7]}."
 
 
 def of_recordings():
