@@ -104,7 +104,7 @@ impl Search {
     /// Whether most clusters are clear: of one part, which leaves nothing, or of several, which leave much, at all speeds. If the model
     /// has an error, a part leaves something between, which vanishes in slow samples. With noise no piece will be exact.
     fn are_clear(&self, clusters: &[Cluster]) -> bool {
-        let told: Vec<&Cluster> = clusters.iter().filter(|own| is_told(own)).collect();
+        let told = told(clusters);
         let is_clear = |own: &&&Cluster| {
             own.variance() <= NOTHING
                 || !self.is_exact(own) && slow_share(&self.felt, &own.representatives) >= VANISHING
@@ -117,7 +117,7 @@ impl Search {
         if self.has_exact_model {
             return clusters.iter().all(|own| self.is_exact(own));
         }
-        let told: Vec<&Cluster> = clusters.iter().filter(|own| is_told(own)).collect();
+        let told = told(clusters);
         let settled = told.par_iter().filter(|own| self.is_settled(own)).count();
         settled == 0 || settled == told.len()
     }
@@ -199,9 +199,14 @@ fn is_told(cluster: &Cluster) -> bool {
     cluster.freedom >= MIN_FREEDOM
 }
 
+/// Those of these clusters that have enough.
+fn told(clusters: &[Cluster]) -> Vec<&Cluster> {
+    clusters.iter().filter(|own| is_told(own)).collect()
+}
+
 /// Whether a quarter of the clusters leave nothing, so that a finer idea of what is exact may find more.
 fn quarter_leaves_nothing(clusters: &[Cluster]) -> bool {
-    let told: Vec<&Cluster> = clusters.iter().filter(|own| is_told(own)).collect();
+    let told = told(clusters);
     4 * told.iter().filter(|own| own.variance() <= NOTHING).count() >= told.len()
 }
 
