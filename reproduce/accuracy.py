@@ -34,7 +34,7 @@ def of_bodies():
 
 
 def of_rhythmic_bodies():
-    source = made("rhythmic", "bodyschema bodies --design reproduce/rhythmic-bodies.toml")
+    source = made("rhythmic", "bodyschema bodies --design reproduce/rhythmic-bodies.toml --out rhythmic")
     if source is None:
         return {}
     recordings = read(SHOWN / "rhythmic" / "recordings.csv")

@@ -66,7 +66,7 @@ const SHORT: usize = 1000;
 /// least 0.003 (docs/estimate.md).
 const LOOP: f64 = 1e-3;
 /// Novelty below which a movement of few motions comes back to similar states, so that a fit is doubtful at best: bodies that swim in
-/// changing gaits, of which a third of the trees are wrong. A recorded walk may have less, but consists of more motions.
+/// changing gaits, of which many trees are wrong (docs/estimate.md). A recorded walk may have less, but consists of more motions.
 const SIMILAR: f64 = 0.1;
 
 /// Whether rigid parts explain what sensors felt.
