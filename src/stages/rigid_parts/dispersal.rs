@@ -48,8 +48,9 @@ impl Search {
             explained += usize::from(least <= EXPLAINED * self.felt.tolerance);
             takes.entry(to).or_default().push(sensor);
         }
-        // Others may explain the rest only once they have it: it may be all that tells them of a direction.
-        if 2 * explained <= own.sensors.len() {
+        // Others may explain the rest only once they have it: it may be all that tells them of a direction. What one motion does not explain
+        // is no part anyway.
+        if self.explains(own) && 2 * explained <= own.sensors.len() {
             return None;
         }
         let unions: Vec<(usize, f64, Cluster)> = takes

@@ -59,6 +59,18 @@ fn sensors_that_feel_the_same_on_both_parts_of_a_hinge_make_no_part() {
 }
 
 #[test]
+fn what_one_motion_does_not_explain_is_dispersed_even_if_others_explain_few_of_it() {
+    // Of the second part, the sensors that feel how the hinge turns are with some of the third. Only these are explained by others.
+    let feels = part(1).split_off(EITHER);
+    let of_third = part(2)[..EITHER].to_vec();
+    assert!(2 * of_third.len() <= feels.len());
+    let mixed = [feels, of_third.clone()].concat();
+    let rest: Vec<usize> = part(2).split_off(of_third.len());
+    let found = dispersed(&[part(1)[..EITHER].to_vec(), mixed, rest]);
+    assert_eq!(found, [part(1), part(2)]);
+}
+
+#[test]
 fn parts_stay() {
     let parts: Vec<Vec<usize>> = (0..3).map(part).collect();
     assert_eq!(dispersed(&parts), parts);
