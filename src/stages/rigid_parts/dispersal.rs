@@ -30,7 +30,7 @@ impl Search {
         clusters.into_iter().flatten().collect()
     }
 
-    /// The clusters that take in the sensors of one, with these, if together that costs less.
+    /// The clusters that take in the sensors of one, with these, if together that costs less: first each sensor for itself, then in groups.
     fn unions(
         &self,
         clusters: &[Option<Cluster>],
@@ -38,26 +38,71 @@ impl Search {
         at: usize,
     ) -> Option<Vec<(usize, Cluster)>> {
         let own = clusters[at].as_ref()?;
+        let others: Vec<usize> =
+            (0..clusters.len()).filter(|&other| other != at && clusters[other].is_some()).collect();
+        let best = |sensor: usize| {
+            let (place, least) = smallest(others.iter().map(|&other| residuals[other][sensor]))?;
+            Some((others[place], least))
+        };
+        let alone: Vec<(usize, f64)> =
+            own.sensors.iter().map(|&sensor| best(sensor)).collect::<Option<_>>()?;
+        let explained = alone.iter().filter(|(_, least)| *least <= EXPLAINED * self.felt.tolerance).count();
         let mut takes: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
-        let mut explained = 0;
-        for &sensor in &own.sensors {
-            let by_others = residuals.iter().enumerate().map(|(other, of)| {
-                if other == at || clusters[other].is_none() { f64::INFINITY } else { of[sensor] }
-            });
-            let (to, least) = smallest(by_others)?;
-            explained += usize::from(least <= EXPLAINED * self.felt.tolerance);
-            takes.entry(to).or_default().push(sensor);
+        own.sensors
+            .iter()
+            .zip(&alone)
+            .for_each(|(&sensor, (to, _))| takes.entry(*to).or_default().push(sensor));
+        // What one motion does not explain is no part anyway.
+        let separately = (2 * explained > own.sensors.len() || !self.explains(own))
+            .then(|| self.shorter(clusters, own, &takes))
+            .flatten();
+        // Others may explain sensors only once they have them all: these may be all that tells them of a direction.
+        separately
+            .or_else(|| self.shorter(clusters, own, &self.takes_in_groups(clusters, own, &others, &takes)))
+    }
+
+    /// Which cluster takes which sensors, where each group goes to the one that it adds least to, and the others as before.
+    fn takes_in_groups(
+        &self,
+        clusters: &[Option<Cluster>],
+        own: &Cluster,
+        others: &[usize],
+        before: &BTreeMap<usize, Vec<usize>>,
+    ) -> BTreeMap<usize, Vec<usize>> {
+        let sensors = |at: usize| &clusters[at].as_ref().expect("it is one of the others").sensors;
+        let mut takes: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+        let groups = self.groups(own);
+        for group in &groups {
+            let cost = |at: usize| {
+                let both = self.with_core(sensors(at), group);
+                (both.description_length - self.core(sensors(at)), at)
+            };
+            let near = self.nearest(group, others.to_vec(), sensors);
+            let costs: Vec<(f64, usize)> = near.into_par_iter().map(cost).collect();
+            let least =
+                costs.into_iter().reduce(|least, other| if other.0 < least.0 { other } else { least });
+            takes.entry(least.expect("there are others").1).or_default().extend(group);
         }
-        // Others may explain the rest only once they have it: it may be all that tells them of a direction. What one motion does not explain
-        // is no part anyway.
-        if self.explains(own) && 2 * explained <= own.sensors.len() {
-            return None;
+        for (&to, sensors) in before {
+            let single = sensors.iter().filter(|sensor| !groups.iter().any(|own| own.contains(sensor)));
+            takes.entry(to).or_default().extend(single);
         }
+        takes
+    }
+
+    /// The clusters with what they take from one, if together that costs less, and one motion explains each.
+    fn shorter(
+        &self,
+        clusters: &[Option<Cluster>],
+        own: &Cluster,
+        takes: &BTreeMap<usize, Vec<usize>>,
+    ) -> Option<Vec<(usize, Cluster)>> {
         let unions: Vec<(usize, f64, Cluster)> = takes
-            .into_par_iter()
-            .map(|(to, sensors)| {
+            .par_iter()
+            .filter(|(_, sensors)| !sensors.is_empty())
+            .map(|(&to, sensors)| {
                 let before = clusters[to].as_ref().map_or(&[][..], |other| &other.sensors);
-                let union = self.learned([before, &sensors].concat());
+                let union = self.learned([before, sensors].concat());
                 (to, union.description_length - self.learned(before.to_vec()).description_length, union)
             })
             .collect();

@@ -40,7 +40,7 @@ impl Search {
     }
 
     /// Groups of sensors of high affinity in a cluster.
-    fn groups(&self, cluster: &Cluster) -> Vec<Vec<usize>> {
+    pub(super) fn groups(&self, cluster: &Cluster) -> Vec<Vec<usize>> {
         let most = (PIECE * cluster.sensors.len() as f64) as usize;
         let mut groups = self.linked(&cluster.sensors, most);
         groups.retain(|own| own.len() >= MIN_GROUP);
@@ -109,12 +109,12 @@ impl Search {
     }
 
     /// Description length of the core of a cluster: some of its sensors, spread over all.
-    fn core(&self, sensors: &[usize]) -> f64 {
+    pub(super) fn core(&self, sensors: &[usize]) -> f64 {
         self.with_core(sensors, &[]).description_length
     }
 
     /// The core of a cluster and a group, as one cluster.
-    fn with_core(&self, sensors: &[usize], group: &[usize]) -> Cluster {
+    pub(super) fn with_core(&self, sensors: &[usize], group: &[usize]) -> Cluster {
         let core: Vec<usize> = stratified(sensors.len(), MAX_TRIED).map(|at| sensors[at]).collect();
         self.learned([core.as_slice(), group].concat())
     }
