@@ -84,7 +84,7 @@ impl Search {
         rest: &[usize],
         group: &[usize],
     ) -> Option<Place> {
-        let tried: Vec<usize> = stratified(group.len(), MAX_TRIED).map(|at| group[at]).collect();
+        let tried = tried(group);
         let alone = self.learned(tried.clone()).description_length;
         let here = self.with_core(rest, &tried).description_length - self.core(rest);
         // Any cluster explains a few sensors.
@@ -93,19 +93,32 @@ impl Search {
             // No other can save as much, since none costs less than nothing.
             return None;
         }
-        let others = (0..if is_told { clusters.len() } else { 0 }).filter(|at| *at != home).collect();
-        let others = self.nearest(group, others, |at| &clusters[at].sensors);
-        let others: Vec<(f64, usize)> = others
-            .into_par_iter()
-            .map(|at| (self.with_core(&clusters[at].sensors, &tried), at))
-            .filter(|(both, _)| self.explains(both))
-            .map(|(both, at)| (both.description_length - cores[at], at))
-            .collect();
-        let least = others.into_iter().reduce(|least, other| if other.0 < least.0 { other } else { least });
+        let others: Vec<usize> =
+            (0..if is_told { clusters.len() } else { 0 }).filter(|at| *at != home).collect();
+        let least = self.least_cost(&tried, others, |at| &clusters[at], |at| cores[at]);
         match least.filter(|(cost, _)| alone - cost > MIN_SAVING) {
             Some((cost, at)) => (here - cost > MIN_SAVING).then_some(Place::Cluster(at)),
             None => (alone - here < MIN_SAVING).then_some(Place::Alone),
         }
+    }
+
+    /// What the sensors of a group that are tried cost with the cluster that they cost least with, and that cluster: of the nearest of
+    /// these clusters, where one motion explains both. `core` gives the description length of the core of a cluster.
+    pub(super) fn least_cost<'a>(
+        &self,
+        tried: &[usize],
+        clusters: Vec<usize>,
+        of: impl Fn(usize) -> &'a Cluster + Sync,
+        core: impl Fn(usize) -> f64 + Sync,
+    ) -> Option<(f64, usize)> {
+        let costs: Vec<(f64, usize)> = self
+            .nearest(tried, clusters, |at| &of(at).sensors)
+            .into_par_iter()
+            .map(|at| (self.with_core(&of(at).sensors, tried), at))
+            .filter(|(both, _)| self.explains(both))
+            .map(|(both, at)| (both.description_length - core(at), at))
+            .collect();
+        costs.into_iter().reduce(|least, other| if other.0 < least.0 { other } else { least })
     }
 
     /// Description length of the core of a cluster: some of its sensors, spread over all.
@@ -114,9 +127,8 @@ impl Search {
     }
 
     /// The core of a cluster and a group, as one cluster.
-    pub(super) fn with_core(&self, sensors: &[usize], group: &[usize]) -> Cluster {
-        let core: Vec<usize> = stratified(sensors.len(), MAX_TRIED).map(|at| sensors[at]).collect();
-        self.learned([core.as_slice(), group].concat())
+    fn with_core(&self, sensors: &[usize], group: &[usize]) -> Cluster {
+        self.learned([&tried(sensors), group].concat())
     }
 
     /// A cluster of sensors, whose motion is learned in more iterations.
@@ -132,6 +144,11 @@ impl Search {
         found.complete(&mut self.felt);
         found
     }
+}
+
+/// Sensors that stand for others in a trial, spread over all of them.
+pub(super) fn tried(sensors: &[usize]) -> Vec<usize> {
+    stratified(sensors.len(), MAX_TRIED).map(|at| sensors[at]).collect()
 }
 
 #[cfg(test)]
