@@ -4,20 +4,20 @@
 //! cluster of their own. It is merged with neither part, since some of its sensors do not fit that one.
 
 use std::collections::BTreeMap;
+use std::sync::OnceLock;
 
 use rayon::prelude::*;
 
 use super::cluster::Cluster;
-use super::moves::tried;
+use super::moves::tried_of;
 use super::search::{EXPLAINED, MIN_SAVING, Search, smallest};
 
 /// A cluster that is not dispersed, and what tells whether it should be.
 struct Kept {
     cluster: Cluster,
-    /// The same, learned in more iterations.
-    learned: Cluster,
-    /// Description length of its core.
-    core: f64,
+    /// Description length of its core, and of it all with a motion learned in more iterations, once they are asked for.
+    core: OnceLock<f64>,
+    length: OnceLock<f64>,
     /// Residual variance of each sensor of the body by its motion.
     residuals: Vec<f64>,
 }
@@ -27,27 +27,42 @@ impl Search {
     pub(super) fn dispersed(&mut self, clusters: Vec<Cluster>) -> Vec<Cluster> {
         let mut order: Vec<usize> = (0..clusters.len()).collect();
         order.sort_by_key(|&at| clusters[at].sensors.len());
-        let kept = |own: Cluster| Some(self.kept(self.learned(own.sensors.clone()), own));
+        let kept = |own: Cluster| Some(self.kept(own));
         let mut clusters: Vec<Option<Kept>> = clusters.into_par_iter().map(kept).collect();
         for at in order {
             let Some(own) = clusters[at].take() else { continue };
             let others: Vec<(usize, &Kept)> =
                 clusters.iter().enumerate().filter_map(|(at, other)| Some((at, other.as_ref()?))).collect();
+            let near = (0..others.len()).collect();
+            let near = self.nearest(&own.cluster.sensors, near, |at| &others[at].1.cluster.sensors);
+            let around = near.iter().map(|&at| &others[at].1.cluster);
+            let trial: Vec<Vec<usize>> =
+                [&own.cluster].into_iter().chain(around).map(|own| own.sensors.clone()).collect();
+            if self.failed.contains(&trial) {
+                clusters[at] = Some(own);
+                continue;
+            }
             let Some(unions) = self.unions(&own, &others) else {
+                self.failed.insert(trial);
                 clusters[at] = Some(own);
                 continue;
             };
             for (to, union) in unions {
                 union.complete(&mut self.felt);
-                clusters[to] = Some(self.kept(union.clone(), union));
+                clusters[to] = Some(self.kept(union));
             }
         }
         clusters.into_iter().flatten().map(|own| own.cluster).collect()
     }
 
-    fn kept(&self, learned: Cluster, cluster: Cluster) -> Kept {
-        let (core, residuals) = (self.core(&cluster.sensors), cluster.residuals(&self.felt));
-        Kept { cluster, learned, core, residuals }
+    fn kept(&self, cluster: Cluster) -> Kept {
+        let residuals = cluster.residuals(&self.felt);
+        Kept { cluster, core: OnceLock::new(), length: OnceLock::new(), residuals }
+    }
+
+    /// Description length of a cluster.
+    fn length(&self, own: &Kept) -> f64 {
+        *own.length.get_or_init(|| self.learned(own.cluster.sensors.clone()).description_length)
     }
 
     /// The clusters that take in the sensors of one, with these, if together that costs less.
@@ -62,15 +77,16 @@ impl Search {
         let explained = by_residual.iter().filter(|(_, least)| is_explained(*least)).count();
         let mut places: Vec<usize> = by_residual.into_iter().map(|(place, _)| place).collect();
         // What one motion does not explain is no part anyway.
-        let is_tried = 2 * explained > sensors.len() || !self.explains(&own.learned);
+        let is_tried = 2 * explained > sensors.len() || self.explaining(sensors.clone()).is_none();
         if is_tried && let Some(unions) = self.shorter(own, others, &places) {
             return Some(unions);
         }
         let mut is_new = false;
         for group in self.groups(&own.cluster) {
-            let every = (0..others.len()).collect();
-            let cluster = |at: usize| &others[at].1.cluster;
-            let least = self.least_cost(&tried(&group), every, cluster, |at| others[at].1.core);
+            let sensors_of = |at: usize| &others[at].1.cluster.sensors;
+            let core = |at: usize| *others[at].1.core.get_or_init(|| self.core(sensors_of(at)));
+            let near = self.nearest(&group, (0..others.len()).collect(), sensors_of);
+            let least = self.least_cost(&tried_of(&group), near, sensors_of, core);
             // Where none explains it, its sensors stay where their residuals are the smallest.
             let Some((_, place)) = least else { continue };
             for sensor in group {
@@ -95,17 +111,16 @@ impl Search {
         for (&sensor, &place) in own.cluster.sensors.iter().zip(places) {
             takes.entry(place).or_default().push(sensor);
         }
-        let unions: Vec<(usize, Cluster)> = takes
-            .into_par_iter()
-            .map(|(place, sensors)| {
-                (place, self.learned([&others[place].1.cluster.sensors[..], &sensors].concat()))
-            })
-            .collect();
-        let cost = |(place, union): &(usize, Cluster)| {
-            union.description_length - others[*place].1.learned.description_length
+        let union = |(place, sensors): (usize, Vec<usize>)| {
+            let before: &Kept = others[place].1;
+            Some((place, self.explaining([&before.cluster.sensors[..], &sensors].concat())?))
         };
-        let saving = own.learned.description_length - unions.iter().map(cost).sum::<f64>();
-        let is_shorter = saving > MIN_SAVING && unions.iter().all(|(_, union)| self.explains(union));
+        let unions: Vec<Option<(usize, Cluster)>> = takes.into_par_iter().map(union).collect();
+        let unions: Vec<(usize, Cluster)> = unions.into_iter().collect::<Option<_>>()?;
+        let cost =
+            |(place, union): &(usize, Cluster)| union.description_length - self.length(others[*place].1);
+        let saving = self.length(own) - unions.iter().map(cost).sum::<f64>();
+        let is_shorter = saving > MIN_SAVING;
         is_shorter.then(|| unions.into_iter().map(|(place, union)| (others[place].0, union)).collect())
     }
 }

@@ -60,7 +60,20 @@ impl Search {
         if rest.len() < MIN_CLUSTER {
             return Vec::new();
         }
-        let Some(place) = self.better_place(clusters, cores, home, &rest, group) else { return Vec::new() };
+        // Any cluster explains a few sensors.
+        let is_told = group.len() >= SEED_SENSORS[0];
+        let others = (0..if is_told { clusters.len() } else { 0 }).filter(|at| *at != home).collect();
+        let near = self.nearest(group, others, |at| &clusters[at].sensors);
+        let around = near.iter().map(|&at| &clusters[at].sensors);
+        let trial: Vec<Vec<usize>> =
+            [&group.to_vec(), &clusters[home].sensors].into_iter().chain(around).cloned().collect();
+        if self.failed.contains(&trial) {
+            return Vec::new();
+        }
+        let Some(place) = self.better_place(clusters, cores, near, &rest, group) else {
+            self.failed.insert(trial);
+            return Vec::new();
+        };
         clusters[home] = self.completing(rest);
         match place {
             Place::Cluster(to) => {
@@ -75,60 +88,58 @@ impl Search {
         }
     }
 
-    /// Where a group costs less than with the rest of its cluster. `cores` has the description length of the core of each cluster.
+    /// Where a group costs less than with the rest of its cluster: in one of the clusters that are near, or alone. `cores` has the
+    /// description length of the core of each cluster.
     fn better_place(
         &self,
         clusters: &[Cluster],
         cores: &[f64],
-        home: usize,
+        near: Vec<usize>,
         rest: &[usize],
         group: &[usize],
     ) -> Option<Place> {
-        let tried = tried(group);
-        let alone = self.learned(tried.clone()).description_length;
-        let here = self.with_core(rest, &tried).description_length - self.core(rest);
-        // Any cluster explains a few sensors.
-        let is_told = group.len() >= SEED_SENSORS[0];
-        if is_told && here <= MIN_SAVING {
+        let tried = tried_of(group);
+        let here =
+            self.learned([tried_of(rest), tried.clone()].concat()).description_length - self.core(rest);
+        if !near.is_empty() && here <= MIN_SAVING {
             // No other can save as much, since none costs less than nothing.
             return None;
         }
-        let others: Vec<usize> =
-            (0..if is_told { clusters.len() } else { 0 }).filter(|at| *at != home).collect();
-        let least = self.least_cost(&tried, others, |at| &clusters[at], |at| cores[at]);
+        let alone = self.learned(tried.clone()).description_length;
+        let least = self.least_cost(&tried, near, |at| &clusters[at].sensors, |at| cores[at]);
         match least.filter(|(cost, _)| alone - cost > MIN_SAVING) {
             Some((cost, at)) => (here - cost > MIN_SAVING).then_some(Place::Cluster(at)),
             None => (alone - here < MIN_SAVING).then_some(Place::Alone),
         }
     }
 
-    /// What the sensors of a group that are tried cost with the cluster that they cost least with, and that cluster: of the nearest of
-    /// these clusters, where one motion explains both. `core` gives the description length of the core of a cluster.
+    /// What the sensors of a group that are tried cost with the cluster that they cost least with, and that cluster: of some clusters,
+    /// where one motion explains both. `core` gives the description length of the core of a cluster.
     pub(super) fn least_cost<'a>(
         &self,
         tried: &[usize],
         clusters: Vec<usize>,
-        of: impl Fn(usize) -> &'a Cluster + Sync,
+        sensors: impl Fn(usize) -> &'a Vec<usize> + Sync,
         core: impl Fn(usize) -> f64 + Sync,
     ) -> Option<(f64, usize)> {
-        let costs: Vec<(f64, usize)> = self
-            .nearest(tried, clusters, |at| &of(at).sensors)
-            .into_par_iter()
-            .map(|at| (self.with_core(&of(at).sensors, tried), at))
-            .filter(|(both, _)| self.explains(both))
-            .map(|(both, at)| (both.description_length - core(at), at))
-            .collect();
-        costs.into_iter().reduce(|least, other| if other.0 < least.0 { other } else { least })
+        let cost = |at: usize| {
+            let both = self.explaining([tried_of(sensors(at)).as_slice(), tried].concat())?;
+            Some((both.description_length - core(at), at))
+        };
+        let costs: Vec<Option<(f64, usize)>> = clusters.into_par_iter().map(cost).collect();
+        costs.into_iter().flatten().reduce(|least, other| if other.0 < least.0 { other } else { least })
     }
 
     /// Description length of the core of a cluster: some of its sensors, spread over all.
     pub(super) fn core(&self, sensors: &[usize]) -> f64 {
-        self.with_core(sensors, &[]).description_length
+        self.learned(tried_of(sensors)).description_length
     }
 
-    /// The core of a cluster and a group, as one cluster.
-    fn with_core(&self, sensors: &[usize], group: &[usize]) -> Cluster {
-        self.learned([&tried(sensors), group].concat())
+    /// A cluster of sensors, whose motion is learned in more iterations, if that explains it.
+    pub(super) fn explaining(&self, sensors: Vec<usize>) -> Option<Cluster> {
+        let mut found = self.may_be_one(Cluster::new(&self.felt, sensors))?;
+        found.learn_more(&self.felt);
+        self.explains(&found).then_some(found)
     }
 
     /// A cluster of sensors, whose motion is learned in more iterations.
@@ -147,7 +158,7 @@ impl Search {
 }
 
 /// Sensors that stand for others in a trial, spread over all of them.
-pub(super) fn tried(sensors: &[usize]) -> Vec<usize> {
+pub(super) fn tried_of(sensors: &[usize]) -> Vec<usize> {
     stratified(sensors.len(), MAX_TRIED).map(|at| sensors[at]).collect()
 }
 

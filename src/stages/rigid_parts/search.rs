@@ -46,12 +46,15 @@ pub(super) struct Search {
     /// Whether the model has no error that counts, however fast parts move. There may be noise. A [separation](super::separation) finds it
     /// out.
     pub(super) has_exact_model: bool,
+    /// Groups that were tried elsewhere, and clusters that were to be dispersed, without success: first its sensors, then those of the
+    /// clusters around it. They are not tried again as long as these are the same.
+    pub(super) failed: BTreeSet<Vec<Vec<usize>>>,
 }
 
 impl Search {
     /// Of sensors that felt this, and that have these affinities, sensors × sensors, 0 to 1.
     pub(super) fn new(felt: Felt, affinities: Mat<f64>) -> Self {
-        Self { felt, affinities, has_exact_model: false }
+        Self { felt, affinities, has_exact_model: false, failed: BTreeSet::new() }
     }
 
     /// The clusters, each of one motion. Sensors that no motion explains are in none.
@@ -146,7 +149,8 @@ impl Search {
             let pairs = self.pairs(&clusters);
             let new = pairs.iter().copied().filter(|pair| !unions.contains_key(pair));
             let new: Vec<(usize, usize)> = new.collect();
-            let union = |(a, b)| ((a, b), Some(Cluster::union(&self.felt, &clusters[&a], &clusters[&b])));
+            let union =
+                |(a, b)| ((a, b), self.may_be_one(Cluster::union(&self.felt, &clusters[&a], &clusters[&b])));
             unions.extend(new.into_par_iter().map(union).collect::<Vec<_>>());
             let mut best = best_merge(&clusters, &unions, &pairs);
             if best.is_none() && self.felt.tolerance >= LEAST_TOLERANCE {
@@ -186,6 +190,12 @@ impl Search {
     /// Whether the motion of a cluster explains it, or whatever it feels.
     pub(super) fn explains(&self, cluster: &Cluster) -> bool {
         cluster.variance() <= EXPLAINED * self.felt.tolerance || cluster.freedom <= 0.5
+    }
+
+    /// A cluster, unless its first iterations leave so much that more would not explain it. Below the least tolerance, only more tell.
+    pub(super) fn may_be_one(&self, cluster: Cluster) -> Option<Cluster> {
+        let is_near = cluster.variance() <= MIXED * self.felt.tolerance || self.explains(&cluster);
+        (is_near || self.felt.tolerance < LEAST_TOLERANCE).then_some(cluster)
     }
 
     /// Each cluster with those of highest affinity, on average.
