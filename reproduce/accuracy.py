@@ -59,9 +59,11 @@ def of_recordings():
     moved = read(SHOWN / "recordings" / "recordings.csv")
     held_out = [row for row in moved if row["use"] == "held out"]
     right = sum(row["tree_right"] == "true" for row in held_out)
+    doubtful = sum(row["fit"] == "doubtful" for row in held_out)
+    doubt = "all" if doubtful == len(held_out) else doubtful
     source = f"Revision {moved[0]['revision'][:7]}; `reproduce/recordings.py`."
     found = (f"Held-out [recorded movements](docs/own-data.md#recorded-movements) (at most {max(int(row['samples']) for row in held_out)} "
-             f"samples): trees right in {interval(right, len(held_out))}.")
+             f"samples): trees right in {interval(right, len(held_out))}, where the fit is doubtful in {doubt}.")
     return {("README.md", "recorded"): [found], ("docs/own-data.md", "recorded"): [*recorded(moved, held_out), "", source]}
 
 

@@ -114,7 +114,7 @@ def page(rows):
         f"with probability 0.9, no noise but where it is named; revision {', '.join(sorted({row['revision'][:7] for row in rows}))}. In brackets after a count: its 95 % "
         "interval (Wilson).",
         "",
-        "| gaps | values missing | sensors used | mean adjusted Rand index (lowest) | parts right | tree right |",
+        "| gaps | values missing | sensors used | mean adjusted Rand index (lowest) | all sensors on their part | tree right |",
         "|---|---|---|---|---|---|",
     ]
     for condition in CONDITIONS:
