@@ -476,8 +476,9 @@ def answer(whole, own, questions):
     if told:
         names = [f"{quoted(row['factor'])} ({with_ends(row, 'all')})" for row in told]
         lines += [
-            f"If the authors answered one question, {quoted(told[0]['factor'])} would narrow the answers most. The share of the variance that",
-            f"knowing it would take away, on average over {len(answers_in(questions))} answers, comes first: {'; '.join(names)}.",
+            f"If the authors answered one question, {quoted(told[0]['factor'])} would narrow the answers most. By the",
+            f"share of the variance of {len(answers_in(questions))} answers that each explains (first-order Sobol index, on average), these come first:",
+            f"{'; '.join(names)}.",
         ]
     missing = [name for name in ANSWERS if name not in questions[0]]
     if missing:
