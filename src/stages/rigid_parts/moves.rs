@@ -98,15 +98,22 @@ impl Search {
         rest: &[usize],
         group: &[usize],
     ) -> Option<Place> {
-        let tried = tried_of(group);
-        let here =
-            self.learned([tried_of(rest), tried.clone()].concat()).description_length - self.core(rest);
-        if !near.is_empty() && here <= MIN_SAVING {
+        let (tried, is_told) = (tried_of(group), !near.is_empty());
+        let both = || self.learned([tried_of(rest), tried.clone()].concat()).description_length;
+        let alone = || self.learned(tried.clone()).description_length;
+        // All at once, since a single one leaves cores idle.
+        let ((least, alone), (both, rest)) = rayon::join(
+            || {
+                let sensors = |at: usize| &clusters[at].sensors;
+                rayon::join(|| self.least_cost(&tried, near, sensors, |at| cores[at]), alone)
+            },
+            || rayon::join(both, || self.core(rest)),
+        );
+        let here = both - rest;
+        if is_told && here <= MIN_SAVING {
             // No other can save as much, since none costs less than nothing.
             return None;
         }
-        let alone = self.learned(tried.clone()).description_length;
-        let least = self.least_cost(&tried, near, |at| &clusters[at].sensors, |at| cores[at]);
         match least.filter(|(cost, _)| alone - cost > MIN_SAVING) {
             Some((cost, at)) => (here - cost > MIN_SAVING).then_some(Place::Cluster(at)),
             None => (alone - here < MIN_SAVING).then_some(Place::Alone),
