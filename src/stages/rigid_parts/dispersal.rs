@@ -38,11 +38,8 @@ impl Search {
             let around = near.iter().map(|&at| &others[at].1.cluster);
             let trial: Vec<Vec<usize>> =
                 [&own.cluster].into_iter().chain(around).map(|own| own.sensors.clone()).collect();
-            if self.failed.contains(&trial) {
-                clusters[at] = Some(own);
-                continue;
-            }
-            let Some(unions) = self.unions(&own, &others) else {
+            let unions = if self.failed.contains(&trial) { None } else { self.unions(&own, &others) };
+            let Some(unions) = unions else {
                 self.failed.insert(trial);
                 clusters[at] = Some(own);
                 continue;

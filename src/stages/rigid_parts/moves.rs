@@ -60,9 +60,9 @@ impl Search {
         if rest.len() < MIN_CLUSTER {
             return Vec::new();
         }
-        // Any cluster explains a few sensors.
-        let is_told = group.len() >= SEED_SENSORS[0];
-        let others = (0..if is_told { clusters.len() } else { 0 }).filter(|at| *at != home).collect();
+        // Any cluster explains a few sensors, so that these go to none.
+        let count = if group.len() >= SEED_SENSORS[0] { clusters.len() } else { 0 };
+        let others = (0..count).filter(|at| *at != home).collect();
         let near = self.nearest(group, others, |at| &clusters[at].sensors);
         let around = near.iter().map(|&at| &clusters[at].sensors);
         let trial: Vec<Vec<usize>> =
@@ -98,10 +98,10 @@ impl Search {
         rest: &[usize],
         group: &[usize],
     ) -> Option<Place> {
-        let (tried, is_told) = (tried_of(group), !near.is_empty());
+        let (tried, has_near) = (tried_of(group), !near.is_empty());
         let both = || self.learned([tried_of(rest), tried.clone()].concat()).description_length;
         let alone = || self.learned(tried.clone()).description_length;
-        // All at once, since a single one leaves cores idle.
+        // Side by side, since each alone keeps one core busy.
         let ((least, alone), (both, rest)) = rayon::join(
             || {
                 let sensors = |at: usize| &clusters[at].sensors;
@@ -110,7 +110,7 @@ impl Search {
             || rayon::join(both, || self.core(rest)),
         );
         let here = both - rest;
-        if is_told && here <= MIN_SAVING {
+        if has_near && here <= MIN_SAVING {
             // No other can save as much, since none costs less than nothing.
             return None;
         }
