@@ -63,7 +63,7 @@ def of_recordings():
     doubt = "all" if doubtful == len(held_out) else doubtful
     source = f"Revision {moved[0]['revision'][:7]}; `reproduce/recordings.py`."
     found = (f"Held-out [recorded movements](docs/own-data.md#recorded-movements) (at most {max(int(row['samples']) for row in held_out)} "
-             f"samples): trees right in {interval(right, len(held_out))}, where the fit is doubtful in {doubt}.")
+             f"samples): trees right in {interval(right, len(held_out))}. The fit is doubtful in {doubt}.")
     return {("README.md", "recorded"): [found], ("docs/own-data.md", "recorded"): [*recorded(moved, held_out), "", source]}
 
 

@@ -10,7 +10,7 @@
 #   reproduce/multiverse.sh gather     # tables and pictures of all finished shards; multiverse.py makes the page of them
 #
 # OUT is the folder of results (results/multiverse), PROGRAM the program (target/release/bodyschema; built if it is missing), and
-# JOBS the number of threads (2). A shard takes some 5 to 40 minutes on two idle cores.
+# JOBS the number of threads (2). A shard takes 5 minutes to 2 hours on two cores.
 set -euo pipefail
 root=$(CDPATH= cd -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")/.." && pwd)
 out=${OUT:-$root/results/multiverse}
