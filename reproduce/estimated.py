@@ -7,6 +7,7 @@ import math
 import pathlib
 import subprocess
 import sys
+import tempfile
 import urllib.request
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
@@ -42,6 +43,14 @@ def estimated(felt, found, seed, *options):
         "joints_right": truth["joints_right"],
         "tree_right": str(truth["tree_right"]).lower(),
     }
+
+
+def revision():
+    """The program's revision, which an estimate has."""
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        run("simulate", "--body", ROOT / "bodies" / "chain-3.toml", "--duration", 100, "--out", folder / "felt")
+        return estimated(folder / "felt", folder / "found", 1)[0]["revision"]
 
 
 def noisy(pressures, noise, random):

@@ -3,8 +3,9 @@
 
 Downloads the files that recordings.toml names into FOLDER of --files, where they are not there yet, and checks each. Imports each
 as a body, feels its movement (`bodyschema simulate --movement`), and asks `bodyschema estimate` how what it finds compares with the truth.
-Writes recordings.csv and README.md into the folder of --out, which is docs/shown/recordings. Needs Python 3.11, and no packages.
-Takes about 12 minutes on two cores. Status: 0, or 2 on an error.
+Writes recordings.csv and README.md into the folder of --out, which is docs/shown/recordings. Those that are held out come first. Rows of
+the same revision are kept, so a run that was stopped continues. Needs Python 3.11, and no packages. Takes about an hour on two cores.
+Status: 0, or 2 on an error.
 """
 
 import argparse
@@ -17,7 +18,7 @@ try:
 except ModuleNotFoundError:
     sys.exit("recordings: needs Python 3.11 or newer")
 
-from estimated import ROOT, TRUTH, downloaded, estimated, run, write
+from estimated import ROOT, TRUTH, downloaded, estimated, read, revision, run, write
 
 COLUMNS = ["recording", "use", "samples", "sensors", "fit", *TRUTH, "revision"]
 
@@ -29,14 +30,20 @@ def main():
     arguments = parser.parse_args()
     design = tomllib.loads((ROOT / "reproduce" / "recordings.toml").read_text())
     of = lambda name: arguments.files / f"{name}.bvh"
-    files = [downloaded(of(one["name"]), one["url"], one["sha256"]) for one in design["recording"]]
-    rows = []
-    for recording, file in zip(design["recording"], files):
-        with tempfile.TemporaryDirectory() as folder:
-            rows.append({"recording": recording["name"], "use": recording["use"], **measured(file, pathlib.Path(folder), design)})
-        print(" ".join(str(rows[-1][column]) for column in COLUMNS), flush=True)
+    for one in design["recording"]:
+        downloaded(of(one["name"]), one["url"], one["sha256"])
     arguments.out.mkdir(parents=True, exist_ok=True)
-    write(arguments.out / "recordings.csv", COLUMNS, rows)
+    table, current = arguments.out / "recordings.csv", revision()
+    done = {row["recording"]: row for row in (read(table) if table.exists() else []) if row["revision"] == current}
+    for one in sorted(design["recording"], key=lambda one: one["use"] != "held out"):
+        if one["name"] not in done:
+            with tempfile.TemporaryDirectory() as folder:
+                row = {"recording": one["name"], "use": one["use"], **measured(of(one["name"]), pathlib.Path(folder), design)}
+            done[one["name"]] = {column: str(row[column]) for column in COLUMNS}
+            print(" ".join(done[one["name"]].values()), flush=True)
+            write(table, COLUMNS, list(done.values()))
+    rows = [done[one["name"]] for one in design["recording"]]
+    write(table, COLUMNS, rows)
     (arguments.out / "README.md").write_text(page(rows, design))
     return 0
 
@@ -67,7 +74,7 @@ def page(rows, design):
     ]
     for row in sorted(rows, key=lambda row: float(row["ari"])):
         tree = "right" if row["tree_right"] == "true" else "wrong"
-        size = f"{row['samples']:,} × {row['sensors']:,}"
+        size = f"{int(row['samples']):,} × {int(row['sensors']):,}"
         joints = f"{row['joints_right']} of {row['true_joints']}"
         cells = [row["recording"], row["use"], size, row["fit"], row["true_parts"], row["parts"], row["ari"], joints, tree]
         lines.append("| " + " | ".join(str(cell) for cell in cells) + " |")

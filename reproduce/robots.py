@@ -23,7 +23,7 @@ try:
 except ModuleNotFoundError:
     sys.exit("robots: needs Python 3.11 or newer")
 
-from estimated import ROOT, TRUTH, downloaded, estimated, fail, interval, read, run, tried, write
+from estimated import ROOT, TRUTH, downloaded, estimated, fail, interval, read, revision, run, tried, write
 
 COLUMNS = ["robot", "kind", "use", "movement", "seed", "sensors", "fit", *TRUTH, "resolved", "unfelt",
            "either", "astray", "astray_either", "refused", "revision"]
@@ -72,14 +72,6 @@ def place(robot, files):
 def keep(folder, kept):
     """Keep what is small."""
     shutil.copytree(folder, kept, ignore=shutil.ignore_patterns("tactile.npy", "poses.npy", "report.html"), dirs_exist_ok=True)
-
-
-def revision():
-    """The program's revision, which an estimate has."""
-    with tempfile.TemporaryDirectory() as name:
-        folder = pathlib.Path(name)
-        run("simulate", "--body", ROOT / "bodies" / "chain-3.toml", "--duration", 100, "--out", folder / "felt")
-        return estimated(folder / "felt", folder / "found", 1)[0]["revision"]
 
 
 def measured(file, folder, movement, design):
