@@ -230,10 +230,10 @@ def search():
     says("with more simulations none has all, and the winner all but one", last["all"] == "0" and int(last["reproduced"]) == int(last["scored"]) - 1)
     value("collapsed-tree", percent(former_default("5", EQUATIONS)["value"]), FORMER)
     # Of single configurations, whose tables are history: these numbers do not change any more.
-    source = "docs/shown/fluid-pairwise/credits.csv at the tag searches"
+    source = "docs/shown/fluid-pairwise/credits.csv at revision e9468f1"
     value("winner-tree", "85.0 %", source)
     value("winner-parts", "6.2", source)
-    source = "docs/shown/fluid-wide/scores.csv at the tag searches"
+    source = "docs/shown/fluid-wide/scores.csv at revision e9468f1"
     value("rings-7", "57 of 751", source)
     value("rings-14", "0 of 381", source)
 

@@ -27,7 +27,7 @@ struct Used {
     purpose: String,
     /// The design, script or page.
     by: String,
-    /// The revision or the tag at which it ran.
+    /// The revision at which it ran.
     at: String,
 }
 

@@ -85,7 +85,7 @@ fn every_seed_of_a_design_is_listed() {
 #[test]
 fn a_sentence_says_for_what_a_seed_was_used() {
     let at_8 = "Seed 8 was used before: to choose the fifth and today's default (calibration: \
-                reproduce/fluid-wide.toml, tag searches).";
+                reproduce/fluid-wide.toml, revision e9468f1).";
     assert_eq!(used_before(8..=8).unwrap(), at_8);
     let of_default = used_before(1414..=1414).unwrap();
     assert!(
