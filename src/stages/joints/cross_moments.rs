@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use nalgebra::DMatrix;
+use rayon::prelude::*;
 
 use super::correlation::{QuadraticForms, correlation};
 use super::moments::{monomials, scales};
@@ -10,6 +11,8 @@ use crate::stages::rigid_parts::{MotionSubspace, stratified};
 
 /// Samples that are used, spread over all.
 const MAX_SAMPLES: usize = 4000;
+/// About as many monomials are summed by one thread at a time.
+const CHUNK: usize = 256;
 
 /// A part with some unassigned clusters.
 pub(super) struct Extended {
@@ -21,8 +24,13 @@ pub(super) struct Extended {
 }
 
 /// Sums over samples of the products of monomials: of each part's motion, of each cluster's, and of one of each.
+///
+/// Only the sums with monomials of parts are kept, since all are needed. There are far more of the others, of which few are.
 pub(super) struct CrossMoments {
-    sums: DMatrix<f64>,
+    /// The monomials at the samples used: samples × monomials, those of parts first.
+    monomials: DMatrix<f64>,
+    /// Sums of the products of all monomials and those of parts.
+    with_parts: DMatrix<f64>,
     /// Where the monomials of a part, of two clusters, and of a part and a cluster are.
     of_part: Vec<Range<usize>>,
     of_clusters: Vec<Vec<Range<usize>>>,
@@ -37,20 +45,20 @@ impl CrossMoments {
     pub(super) fn new(parts: &[MotionSubspace], unassigned: &[MotionSubspace], samples: usize) -> Self {
         let chosen: Vec<usize> = stratified(samples, MAX_SAMPLES).collect();
         let scales = scales(parts, samples);
-        let mut columns: Vec<Vec<f64>> = Vec::new();
+        let mut values: Vec<f64> = Vec::new();
         let mut add = |a: &MotionSubspace, b: &MotionSubspace, same: bool| {
-            let first = columns.len();
+            let first = values.len() / chosen.len();
             for i in 0..a.rank {
                 for j in if same { i } else { 0 }..b.rank {
                     let product = |&t: &usize| scales[t] * a.at(t)[i] * b.at(t)[j];
                     // What is not known says nothing.
                     let known = |product: f64| if product.is_nan() { 0.0 } else { product };
-                    columns.push(chosen.iter().map(product).map(known).collect());
+                    values.extend(chosen.iter().map(product).map(known));
                 }
             }
-            first..columns.len()
+            first..values.len() / chosen.len()
         };
-        let of_part = parts.iter().map(|part| add(part, part, true)).collect();
+        let of_part: Vec<Range<usize>> = parts.iter().map(|part| add(part, part, true)).collect();
         let of_clusters = (0..unassigned.len())
             .map(|a| (0..=a).map(|b| add(&unassigned[a], &unassigned[b], a == b)).collect())
             .collect();
@@ -58,10 +66,11 @@ impl CrossMoments {
             .iter()
             .map(|part| unassigned.iter().map(|cluster| add(part, cluster, false)).collect())
             .collect();
-        let all = DMatrix::from_fn(chosen.len(), columns.len(), |row, column| columns[column][row]);
+        let monomials = DMatrix::from_vec(chosen.len(), values.len() / chosen.len(), values);
+        let with_parts = products(&monomials, of_part.last().map_or(0, |last| last.end));
         let ranks = |motions: &[MotionSubspace]| motions.iter().map(|motion| motion.rank).collect();
         let (parts, clusters) = (ranks(parts), ranks(unassigned));
-        Self { sums: all.transpose() * &all, of_part, of_clusters, of_both, parts, clusters }
+        Self { monomials, with_parts, of_part, of_clusters, of_both, parts, clusters }
     }
 
     /// Number of parts.
@@ -112,7 +121,42 @@ impl CrossMoments {
         (places, pairs)
     }
 
+    /// The sums of the products of some monomials and others.
     fn select(&self, rows: &[usize], columns: &[usize]) -> DMatrix<f64> {
-        DMatrix::from_fn(rows.len(), columns.len(), |row, column| self.sums[(rows[row], columns[column])])
+        let of_parts = self.with_parts.ncols();
+        let others = |places: &[usize]| places.iter().copied().filter(|place| *place >= of_parts).collect();
+        let (own, theirs): (Vec<usize>, Vec<usize>) = (others(rows), others(columns));
+        let sums_of_others =
+            self.monomials.select_columns(&own).transpose() * self.monomials.select_columns(&theirs);
+        let mut rest = sums_of_others.iter();
+        // By column, as a matrix is kept.
+        let mut sums = DMatrix::zeros(rows.len(), columns.len());
+        for (at, &column) in columns.iter().enumerate() {
+            for (sum, &row) in sums.column_mut(at).iter_mut().zip(rows) {
+                *sum = match (row < of_parts, column < of_parts) {
+                    (_, true) => self.with_parts[(row, column)],
+                    (true, false) => self.with_parts[(column, row)],
+                    (false, false) => *rest.next().expect("a sum for each pair"),
+                };
+            }
+        }
+        sums
     }
+}
+
+/// Sums over samples of the products of all monomials and the first ones, so many. In: samples × monomials.
+fn products(monomials: &DMatrix<f64>, first: usize) -> DMatrix<f64> {
+    let (all, firsts) = (monomials.ncols(), monomials.columns(0, first));
+    let chunks = all.div_ceil(CHUNK);
+    let of = |chunk: usize| {
+        let own = chunk * all / chunks..(chunk + 1) * all / chunks;
+        // By row of the result.
+        firsts.transpose() * monomials.columns(own.start, own.len())
+    };
+    let found: Vec<DMatrix<f64>> = (0..chunks).into_par_iter().map(of).collect();
+    let mut sums = DMatrix::zeros(all, first);
+    for (chunk, found) in found.iter().enumerate() {
+        sums.rows_mut(chunk * all / chunks, found.ncols()).tr_copy_from(found);
+    }
+    sums
 }
