@@ -72,11 +72,11 @@ const SIMILAR: f64 = 0.1;
 /// Whether rigid parts explain what sensors felt.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Verdict {
-    /// They do.
+    /// They explain at least 80 % of the sensors, over 1,000 samples or more, and the movement does not come back to similar states.
     Good,
-    /// Of some sensors they do not, or the recording is too short to tell.
+    /// They explain at least 65 % of the sensors.
     Doubtful,
-    /// They do not: parts and tree mean nothing.
+    /// They explain fewer, or the movement repeats itself: parts and tree mean nothing.
     DoesNotFit,
 }
 
@@ -174,7 +174,7 @@ pub struct TooFewSensors {
 ///
 /// In: a [`Recording`], and how its pressures are quantised for distances. Out: the part of each of its sensors, and the tree over
 /// the parts with the bootstrap support of each edge, given the parts. Calls `tick` after each of the three steps: distances,
-/// parts, joints. The same recording and state of `rng` give the same bytes, whatever the number of threads.
+/// parts, joints. The same recording and state of `rng` give the same bytes on one kind of processor, whatever the number of threads.
 ///
 /// # Errors
 /// If the recording has fewer sensors than [`MIN_SENSORS`].
@@ -230,7 +230,8 @@ fn cause(tactile: &Tactile, is_noisy: bool) -> &'static str {
     }
 }
 
-/// Some sensors, spread over all and rising, and their distances. `signed`: whether negative pressures are signal.
+/// The information metric, in bits, between at most 800 sensors over at most 20,000 samples. Out: these sensors, rising, and their m × m
+/// distances. A missing value counts as the one before. `signed`: whether negative pressures are signal.
 pub fn distances(tactile: &Tactile, signed: bool, levels: &Quantise) -> (Vec<usize>, Distances) {
     let sensors = searched(tactile);
     let distances = information_metric(&quantise(&excerpt(tactile, signed, &sensors), levels));
@@ -290,5 +291,23 @@ mod tests {
         let short = fit(SHORT - 1, 0.1);
         assert_eq!((short.verdict, short.explained), (Verdict::Doubtful, 1.0));
         assert!(short.cause.is_some());
+    }
+
+    #[test]
+    fn sensors_that_rest_a_little_below_0_feel_nothing_there() {
+        let samples = 400;
+        let touch = |sensor: usize, t: usize| match t % 10 {
+            0 => 2000.0 * (1.0 + ((7 * t + 13 * sensor) % 29) as f32 / 29.0),
+            _ => -1.0 - t as f32 / samples as f32,
+        };
+        let pressures = (0..24).flat_map(|sensor| (0..samples).map(move |t| touch(sensor, t))).collect();
+        let recording = Recording::new(Tactile { samples, pressures });
+        assert!(!recording.signed);
+        let levels = crate::settings::Settings::load_over(Some(crate::settings::Base::ESTIMATE), None)
+            .unwrap()
+            .quantise;
+        let rng = &mut crate::numerics::rng::stream(1, 1, "co-motion", 0);
+        let found = estimate(&recording, &levels, rng, &|| ()).unwrap();
+        assert!(found.parts.residuals.iter().all(|residual| residual.is_finite()));
     }
 }

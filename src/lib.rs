@@ -84,7 +84,7 @@ pub mod internals {
     /// The revision of the repository that the program was built from.
     pub const REVISION: &str = env!("BODYSCHEMA_REVISION");
 
-    /// Steps of a sweep, which are compared with a second reading one by one.
+    /// Steps of a sweep, each of which is compared with an independent implementation.
     pub mod sampler {
         pub use crate::stages::mixture::assignments::draw_labels;
         pub use crate::stages::schema::components::Components;

@@ -39,7 +39,7 @@ pub struct Mapped {
     pub facts: Facts,
 }
 
-/// How well the sensors of a body could be mapped.
+/// How well the sensors of a simulated body could be mapped.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Facts {
     /// Sensors that showed one symbol throughout.
@@ -60,20 +60,20 @@ pub struct Facts {
 pub struct Condition {
     /// The mixture.
     pub model: Model,
-    /// p.
+    /// p, 0 to 1: the probability that a joint is locked for an epoch (section 5.1).
     pub coordination: f64,
-    /// d.
+    /// d: the number of dimensions of the body map.
     pub dimension: usize,
 }
 
-/// A draw and its evaluation: a row of an experiment's `samples.csv`.
+/// A posterior sample and its evaluation: a row of an experiment's `samples.csv`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Record {
     /// Simulation, from 1.
     pub simulation: usize,
-    /// p of its movement.
+    /// p of its movement, 0 to 1.
     pub coordination: f64,
-    /// d of the body map.
+    /// d: the number of dimensions of the body map.
     pub dimension: usize,
     /// The mixture.
     pub model: Model,
@@ -94,7 +94,7 @@ pub struct Record {
 }
 
 impl Record {
-    /// The condition that this draw is of.
+    /// The condition that this sample is of.
     pub fn condition(&self) -> Condition {
         Condition { model: self.model, coordination: self.coordination, dimension: self.dimension }
     }
@@ -105,9 +105,9 @@ impl Record {
 pub struct BaselineRecord {
     /// Simulation, from 1.
     pub simulation: usize,
-    /// p of its movement.
+    /// p of its movement, 0 to 1.
     pub coordination: f64,
-    /// d of the body map.
+    /// d: the number of dimensions of the body map.
     pub dimension: usize,
     /// The clustering.
     pub method: ClusteringMethod,
@@ -250,9 +250,9 @@ pub fn map_stream(seed: u64, simulation: usize, dims: usize, start: usize) -> St
 /// The result of the inference on one body map.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Inference {
-    /// All draws, evaluated.
+    /// All posterior samples, evaluated.
     pub records: Vec<Record>,
-    /// The draw of highest log posterior.
+    /// The posterior sample of highest log p(x, z).
     pub best: Sample,
     /// How well the physics step resolved the movement of the body.
     pub resolution: Resolution,

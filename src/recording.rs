@@ -32,7 +32,7 @@ pub struct Recording {
     pub signed: bool,
 }
 
-/// What a user may say of a recording, so that the data do not tell it.
+/// What a user says of a recording, in place of what the data tell.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Cleaning {
     /// Whether values at the end of a sensor's range are no sign of saturation, and count.
@@ -51,7 +51,7 @@ impl Recording {
     /// mostly missing, and smooths the noisy ones of the others. It may drop all. Infinite and saturated values count as missing.
     pub fn cleaned(mut tactile: Tactile, Cleaning { keep_saturated, signed }: Cleaning) -> Self {
         if signed == Some(false) {
-            // NaN stays.
+            // A comparison with NaN is false, so that missing values stay missing.
             let negative = tactile.pressures.iter_mut().filter(|pressure| **pressure < 0.0);
             negative.for_each(|pressure| *pressure = 0.0);
         }

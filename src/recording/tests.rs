@@ -14,7 +14,7 @@ fn a_recording_knows_what_became_of_each_sensor_and_sample() {
     ];
     let recording = Recording::new(Tactile { samples: 5, pressures: pressures.concat() });
     assert_eq!((&recording.sensors[..], &recording.samples[..]), (&[0, 3][..], &[0, 1, 2, 4][..]));
-    assert_eq!(recording.dropped, [(1, Fault::Dead), (2, Fault::NotFinite)]);
+    assert_eq!(recording.dropped, [(1, Fault::Dead), (2, Fault::MostlyMissing)]);
     assert_eq!((recording.lost_samples, recording.noisy, recording.signed), (1, 0, false));
     assert_eq!(recording.all_sensors(), 4);
     let truth = Truth::new(vec![7, 8, 8, 9], vec![(8, 7), (9, 8)]);

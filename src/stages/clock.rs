@@ -53,7 +53,7 @@ impl Clock {
             return Some(Self { mark: Mark::Name, interval });
         }
         let step = step.filter(|step| values.len() >= MIN_VALUES && is_even(values, *step))?;
-        let counts = step == 1.0 && values.iter().all(|value| value.fract() == 0.0);
+        let counts = step == 1.0 && values.iter().all(|value| value.is_nan() || value.fract() == 0.0);
         let interval = (!counts).then(|| in_seconds(step, Unit::Unknown, values, is_single));
         Some(Self { mark: if counts { Mark::Counts } else { Mark::EvenSteps }, interval })
     }

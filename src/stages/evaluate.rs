@@ -43,7 +43,11 @@ pub struct Score {
     pub tree_correct: bool,
 }
 
-/// Evaluates estimated parts and their tree against the truth (section 5.2); `eligible_ari` is the minimum ARI at which its tree counts.
+/// Evaluates estimated parts and their tree against the truth (section 5.2); `eligible_ari` is the minimum ARI at which its
+/// tree counts.
+///
+/// # Panics
+/// If there are not as many labels as true ones.
 pub fn score(labels: &[usize], tree: &[Edge], truth: &Truth, eligible_ari: f64) -> Score {
     let ari = adjusted_rand_index(labels, &truth.labels);
     Score {

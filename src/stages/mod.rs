@@ -20,11 +20,12 @@
 //! | [`noise`] | pressures → smoothed, with 0 where there is no touch |
 //! | [`rigid_parts`] | pressures → [`RigidParts`](rigid_parts::RigidParts): the part of each sensor, by motion subspaces |
 //! | [`joints`] | pressures, parts → [`Joints`](joints::Joints): a tree over parts, by joint speeds and motions, and the support of its edges |
+//! | [`placement`] | pressures, parts, tree, places of sensors → [`Placement`](placement::Placement): where the joints are |
 //!
 //! Beside stage 6, [`baselines`] cluster the same body map; [`mixture`] holds what both build on, [`tree`] the trees.
 //! M is the number of sensors, T the number of samples, N the number of levels, d the number of dimensions.
 //!
-//! No stage reads or writes a file, or prints. Random numbers come from an argument. Long stages call a `tick`
+//! No stage reads or writes a file, or prints. Random numbers come from a generator or a seed that is an argument. Long stages call a `tick`
 //! function as they go on.
 
 pub mod agent;

@@ -73,7 +73,7 @@ pub fn above_noise(mut tactile: Tactile) -> (Tactile, usize) {
 
 /// The median absolute second difference of a series with noise; `None` if it has none.
 fn size(series: &[f32]) -> Option<f32> {
-    // NaN next to a gap.
+    // A difference that touches a gap is NaN, and is left out below.
     let differences: Vec<f32> = series.windows(3).map(|three| three[0] - 2.0 * three[1] + three[2]).collect();
     let known = differences.iter().filter(|difference| !difference.is_nan()).count();
     let mut sizes: Vec<f32> =
@@ -86,7 +86,8 @@ fn size(series: &[f32]) -> Option<f32> {
         .map(|four| four[0] * four[3])
         .filter(|product| product.abs() > 0.0)
         .fold((0, 0), |(pairs, alike), product| (pairs + 1, alike + usize::from(product > 0.0)));
-    if (alike as f64 / f64::from(pairs) - 0.5).abs() > MAX_SIGN_IMBALANCE {
+    // With a gap at every sixth sample, no two differences tell whether noise has a memory.
+    if pairs == 0 || (alike as f64 / f64::from(pairs) - 0.5).abs() > MAX_SIGN_IMBALANCE {
         return None;
     }
     let middle = sizes.len() / 2;

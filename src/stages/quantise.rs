@@ -49,7 +49,7 @@ impl Quantise {
 /// Quantised tactile information a_{i,t} of M sensors at T times.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Symbols {
-    /// T.
+    /// T, at least 1.
     pub samples: usize,
     /// N, number of levels; each symbol is below it.
     pub levels: usize,
@@ -82,10 +82,14 @@ impl Symbols {
 
 /// Turns pressures into symbols (section 4.1).
 ///
-/// In: M × T pressures in Pa. Out: M × T symbols from 0 to N − 1, where N is `settings.levels` and counts the level for
+/// In: M × T pressures in Pa. Out: M × T symbols from 0 to N − 1, where N is `settings.levels`. With levels of equal frequency, level 0 is
 /// no pressure. A sensor with fewer distinct positive values than levels leaves some levels empty.
+///
+/// # Panics
+/// If there are not 2 to 256 levels, or T is 0.
 pub fn quantise(tactile: &Tactile, settings: &Quantise) -> Symbols {
     let levels = settings.levels;
+    assert!((2..=256).contains(&levels), "2 to 256 levels, not {levels}");
     let common = match settings.scheme {
         Scheme::PerSensor => None,
         Scheme::Pooled => Some(equal_frequency(&tactile.pressures, levels)),
@@ -121,8 +125,8 @@ fn equal_frequency(pressures: &[f32], levels: usize) -> Vec<f32> {
     std::iter::once(0.0).chain(ranks.into_iter().map(|rank| positive[rank])).collect()
 }
 
-/// Brings to each of some ranks, which rise and count from `first`, the value that sorting would: by the one in the middle, and then
-/// those on its either side. To select takes less than to sort.
+/// Puts at each rank the value that sorting would put there. It selects the median rank, and then those on both sides, which is faster
+/// than to sort. `ranks` rise, and count from `first`.
 fn select(values: &mut [f32], ranks: &[usize], first: usize) {
     let Some(&middle) = ranks.get(ranks.len() / 2) else { return };
     let (below, _, above) = values.select_nth_unstable_by(middle - first, f32::total_cmp);

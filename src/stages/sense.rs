@@ -45,7 +45,7 @@ impl Sense {
 /// and NaN where a value is missing.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tactile {
-    /// T.
+    /// T, at least 1.
     pub samples: usize,
     /// M × T: the whole series of one sensor after that of another.
     pub pressures: Vec<f32>,

@@ -1,6 +1,7 @@
 //! Find the minimum spanning tree of weighted edges by Prim's algorithm (equation 22; Cormen et al.), and hold the true
 //! tree.
 
+use nalgebra::DVector;
 use serde::{Deserialize, Serialize};
 
 use crate::numerics::partition::sizes;
@@ -87,6 +88,11 @@ pub fn prim(nodes: &[usize], mut weight: impl FnMut(usize, usize) -> f64) -> Vec
         }
     }
     tree
+}
+
+/// The tree of least total distance over those of these points, of which `nodes` are the numbers.
+pub fn shortest(nodes: &[usize], points: &[DVector<f64>]) -> Vec<Edge> {
+    prim(nodes, |a, b| points[a].metric_distance(&points[b]))
 }
 
 #[cfg(test)]

@@ -19,7 +19,7 @@ const MOST_MISSING: f64 = 0.4;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Fault {
     /// Too many of its values are missing.
-    NotFinite,
+    MostlyMissing,
     /// It is 0 throughout.
     Dead,
     /// It has one value throughout, which is not 0.
@@ -29,7 +29,7 @@ pub enum Fault {
 impl Display for Fault {
     fn fmt(&self, formatter: &mut Formatter<'_>) -> fmt::Result {
         formatter.write_str(match self {
-            Self::NotFinite => "missing",
+            Self::MostlyMissing => "missing",
             Self::Dead => "dead",
             Self::Constant => "constant",
         })
@@ -45,22 +45,22 @@ pub struct Missing {
     pub infinite: usize,
     /// Saturated values of the whole recording.
     pub saturated: usize,
-    /// Sensors that have any of these.
+    /// Sensors that have any saturated value.
     pub saturated_sensors: usize,
 }
 
 /// A recording of sensors that tell something, and what was dropped.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Usable {
-    /// Their pressures, NaN where one is missing.
+    /// Pressures of the kept sensors at the kept samples, NaN where one is missing.
     pub tactile: Tactile,
-    /// The sensors that they are of, rising.
+    /// The kept sensors, rising.
     pub sensors: Vec<usize>,
-    /// The other sensors, rising.
+    /// The dropped sensors, rising, and why.
     pub dropped: Vec<(usize, Fault)>,
     /// Samples that were left out, because more than half of the sensors have no number there.
     pub lost_samples: usize,
-    /// The other samples, rising.
+    /// The kept samples, rising.
     pub samples: Vec<usize>,
     /// What is missing.
     pub missing: Missing,
@@ -108,7 +108,7 @@ fn gaps_and_fault(series: &[f32]) -> (usize, Option<Fault>) {
     let gaps = gaps(series);
     let known = || series.iter().filter(|pressure| !pressure.is_nan());
     let fault = if is_missing(gaps, series.len()) {
-        Some(Fault::NotFinite)
+        Some(Fault::MostlyMissing)
     } else if known().all(|pressure| *pressure == 0.0) {
         Some(Fault::Dead)
     } else {
@@ -198,7 +198,8 @@ mod tests {
         assert_eq!(found.missing, Missing { infinite: 2, ..Missing::default() });
         assert_eq!(found.sensors, [0, 4]);
         assert_eq!(found.tactile.pressures, [1.0, 2.0, 0.0, -1.0]);
-        let dropped = [(1, Fault::NotFinite), (2, Fault::Dead), (3, Fault::Constant), (5, Fault::NotFinite)];
+        let dropped =
+            [(1, Fault::MostlyMissing), (2, Fault::Dead), (3, Fault::Constant), (5, Fault::MostlyMissing)];
         assert_eq!(found.dropped, dropped);
     }
 
@@ -221,7 +222,7 @@ mod tests {
         (0..3).for_each(|_| pressures.extend([1.0, nan, nan, nan, nan, nan]));
         let found = usable(Tactile { samples: 6, pressures });
         assert_eq!((found.lost_samples, found.sensors), (0, vec![0, 1]));
-        assert_eq!(found.dropped, [2, 3, 4].map(|sensor| (sensor, Fault::NotFinite)));
+        assert_eq!(found.dropped, [2, 3, 4].map(|sensor| (sensor, Fault::MostlyMissing)));
     }
 
     #[test]
@@ -230,7 +231,7 @@ mod tests {
         let pressures = vec![1.0, nan, 2.0, nan, 4.0, nan, nan, 1.0, nan, 2.0, 1.0, 2.0, 3.0, 4.0, 5.0];
         let found = usable(Tactile { samples: 5, pressures });
         assert_eq!((found.sensors, found.missing.values), (vec![0, 2], 2));
-        assert_eq!((found.dropped, found.lost_samples), (vec![(1, Fault::NotFinite)], 0));
+        assert_eq!((found.dropped, found.lost_samples), (vec![(1, Fault::MostlyMissing)], 0));
     }
 
     #[test]

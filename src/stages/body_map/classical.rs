@@ -59,7 +59,7 @@ impl ClassicalScaling {
     /// dimensions.
     ///
     /// # Errors
-    /// If the largest distance is far from 1, or the eigen-decomposition does not converge.
+    /// If the largest distance is outside 1e-50 to 1e50, or the eigen-decomposition does not converge.
     pub fn new(distances: &Distances, dims: usize) -> Result<Self, MapError> {
         let n = distances.sensors;
         let longest = distances.values.iter().copied().fold(0.0, f64::max);
@@ -79,15 +79,15 @@ impl ClassicalScaling {
         Ok(Self { vectors: vectors.collect(), eigenvalues: values, sensors: n, squares })
     }
 
-    /// Number of the largest eigenvalues that are above rounding: of all positive ones, if it is less than the
-    /// dimensions that the decomposition was made for. 0 if no sensor differs from another.
+    /// How many of the computed eigenvalues are above rounding error. This is the number of all positive ones if it
+    /// is below the number of dimensions asked for. 0 if no sensor differs from another.
     pub fn positive(&self) -> usize {
         let rounding = self.squares.sqrt() * f64::EPSILON * self.sensors as f64;
         self.eigenvalues.iter().filter(|value| **value > rounding).count()
     }
 
-    /// How well a map of d dimensions agrees with the distances: share of its eigenvalues in the sum of the
-    /// squares of all, negative ones too (α₂ of Mardia, Kent & Bibby, Multivariate Analysis, 1979, section 14.4).
+    /// How well a map of d dimensions agrees with the distances: the sum of the squares of its eigenvalues, as a
+    /// share of that of all, negative ones too (α₂ of Mardia, Kent & Bibby, Multivariate Analysis, 1979, section 14.4).
     /// 1 if the points of the map have these distances, 0 if all distances are 0.
     pub fn agreement(&self, dims: usize) -> f64 {
         let kept: f64 = self.eigenvalues.iter().take(dims).map(|value| value.powi(2)).sum();

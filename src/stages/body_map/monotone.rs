@@ -73,7 +73,7 @@ impl Monotone {
         self.residual = fitted.iter().zip(&self.values).map(|(fit, value)| (fit - value).powi(2)).sum();
         let squares: f64 = fitted.iter().map(|fit| fit.powi(2)).sum();
         let scale = if squares > 0.0 { (self.squares / squares).sqrt() } else { 0.0 };
-        // Of the diagonal.
+        // The ranks of the diagonal point one beyond the last pair.
         fitted.push(0.0);
         let pairs = self.disparities.par_iter_mut().zip(&self.ranks);
         pairs.for_each(|(disparity, rank)| *disparity = scale * fitted[*rank]);

@@ -134,7 +134,7 @@ impl<'a> Assignment<'a> {
         Trial { correlations: self.correlations_of(part, &extended, None), clusters, part, extended }
     }
 
-    /// The correlations of a part, as it would be, with all others, of which one may be as it would be, too.
+    /// The correlations of a part with all others, if it were `extended` and, where it is given, another part as in `changed`.
     fn correlations_of(
         &self,
         part: usize,

@@ -17,7 +17,7 @@ const LINEAR: f64 = 0.1;
 /// What is added to the variances of components, as a share of their mean: those of hardly any variance are noise.
 const RIDGE: f64 = 1e-3;
 
-/// Of squared joint speeds of this correlation, 0 to 1: −½ ln(1 − ρ²), but for a share that is negligible; 0 if they have nothing in common.
+/// Of squared joint speeds of this correlation, 0 to 1: −½ ln(1 − r²), but for a share that is negligible; 0 if they have nothing in common.
 pub(super) fn of_speeds(correlation: f64) -> f64 {
     -0.5 * ((1.0 - correlation * correlation + NEGLIGIBLE) / (1.0 + NEGLIGIBLE)).ln()
 }

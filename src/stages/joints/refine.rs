@@ -30,8 +30,8 @@ type Members = BTreeMap<usize, Vec<usize>>;
 /// The parts with each unassigned cluster assigned, and how they are joined.
 ///
 /// A cluster is assigned to the part that the joints tell; if none does, each of its sensors to the part with the smallest
-/// residual. In: M × T pressures, of any sign, whether negative ones are signal (`signed`), and the parts and unassigned clusters of their sensors. Out: parts without
-/// unassigned clusters, named by appearance, and their tree.
+/// residual. In: M × T pressures, of any sign, whether negative ones are signal (`signed`), and the parts and unassigned clusters of
+/// their sensors. Out: parts without unassigned clusters, named by appearance, and their tree.
 pub(crate) fn refine(
     tactile: &Tactile,
     signed: bool,
@@ -73,6 +73,8 @@ fn refined(
         *others = others.iter().filter_map(|(part, residual)| Some((*new.get(part)?, *residual))).collect();
     }
     (refined.labels, refined.unassigned) = (labels, Vec::new());
+    // They are of the labels before.
+    refined.motions.clear();
     let (names, motions) = nodes.into_iter().unzip();
     (refined, names, motions)
 }
@@ -186,6 +188,7 @@ impl<'a> Refinement<'a> {
     fn dissolve(&self, parts: &mut RigidParts, part: usize) {
         parts.motions.remove(&part);
         let own: Vec<usize> = (0..parts.labels.len()).filter(|at| parts.labels[*at] == part).collect();
+        own.iter().for_each(|&sensor| parts.residuals[sensor] = 0.0);
         for cluster in similar(&self.roots, &own) {
             let name = parts.labels.iter().chain(&parts.unassigned).max().map_or(0, |last| last + 1);
             assign_to(parts, &cluster, name);

@@ -96,9 +96,9 @@ impl Joints {
 
 /// Estimates how given parts are joined, from the pressures on their sensors.
 ///
-/// In: M × T pressures, finite and of any sign; whether negative ones are signal (`signed`), not noise about 0; and for each of the M
-/// sensors the label of its part, any number, or `None` for a sensor to be left out. `rank`, 1 to 6, is the rank of the motion subspace of each part; without it, the data choose one for
-/// each. Out: the tree, and for each pair of parts their correlation and the bootstrap support of an edge between them. The same
+/// In: M × T pressures of any sign, NaN where one is missing; whether negative ones are signal (`signed`), not noise about 0; and for
+/// each of the M sensors the label of its part, any number, or `None` for a sensor to be left out. `rank`, 1 to 6, is the rank of the
+/// motion subspace of each part, at most one less than it has sensors; without it, the data choose one for each. Out: the tree, and for each pair of parts their correlation and the bootstrap support of an edge between them. The same
 /// input and state of `rng` give the same bytes, whatever the number of threads.
 ///
 /// # Panics

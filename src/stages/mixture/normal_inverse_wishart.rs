@@ -21,7 +21,7 @@ use super::points::SufficientStatistics;
 pub enum MeanCovariance {
     /// Ψ⁻¹ / k, which is no normal-inverse-Wishart: what the first author's code computes.
     InverseScale,
-    /// Σ / k, as in equations 10 and 17.
+    /// Σ / k, as in equations 10 and 16.
     Component,
 }
 

@@ -16,20 +16,23 @@ const TOUCH_LIMIT: [f64; 2] = [0.5, 3.5];
 /// Replaces pressures by fitted values, and by 0 where these are within the noise. `size` is the median absolute second difference.
 pub(super) fn smooth(series: &mut [f32], size: f32) {
     let size = f64::from(size);
-    let sums = sums(series);
+    // Sums of squares of a large offset would lose the noise.
+    let offset = series.first().map_or(0.0, |first| f64::from(*first));
+    let sums = sums(series, offset);
     let windows = HALF_WIDTHS.map(Windows::new);
     for (t, pressure) in series.iter_mut().enumerate() {
         let line = windows.iter().find_map(|around| around.line(&sums, t, MAX_RESIDUAL * size * size));
-        let line = line.unwrap_or(Line { value: f64::from(*pressure), residual: 0.0, deviation: 1.0 });
-        *pressure = line.touch(size);
+        let line =
+            line.unwrap_or(Line { value: f64::from(*pressure) - offset, residual: 0.0, deviation: 1.0 });
+        *pressure = Line { value: offset + line.value, ..line }.touch(size);
     }
 }
 
-/// Up to each time, the sums of pressures, of pressures times their time, and of their squares.
-fn sums(series: &[f32]) -> Vec<[f64; 3]> {
+/// Up to each time, the sums of pressures, of pressures times their time, and of their squares. Pressures are beyond this offset.
+fn sums(series: &[f32], offset: f64) -> Vec<[f64; 3]> {
     let mut sums = vec![[0.0; 3]];
     for (t, pressure) in series.iter().enumerate() {
-        let (pressure, [a, b, c]) = (f64::from(*pressure), sums[t]);
+        let (pressure, [a, b, c]) = (f64::from(*pressure) - offset, sums[t]);
         sums.push([a + pressure, b + pressure * t as f64, c + pressure * pressure]);
     }
     sums

@@ -16,7 +16,7 @@ use super::roots::{Roots, columns, product};
 use super::stratified::stratified;
 
 /// Sensors of a cluster that its motion is learned from, spread over all.
-const MAX_SENSORS: usize = 48;
+pub(super) const MAX_SENSORS: usize = 48;
 /// Iterations in which the motion of a cluster is learned, and more where it is in doubt whether one motion explains it.
 pub(super) const ITERATIONS: [usize; 2] = [8, 24];
 /// Iterations in which c of other sensors is found from given w: where completed roots start it, and from nothing. A sensor that feels

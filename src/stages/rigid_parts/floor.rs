@@ -6,13 +6,14 @@
 use rayon::prelude::*;
 
 use super::medians::median;
+use super::roots::size;
 use super::stratified::stratified;
 use super::subspace::felt_samples;
 
-/// The root of the least pressure of each sensor, of any sign, that is other than 0; 0 if all are 0.
-pub(super) fn floors(series: &[&[f32]]) -> Vec<f64> {
+/// The root of the least size of each sensor that is other than 0; 0 if all are 0. `signed`: whether negative pressures are signal.
+pub(super) fn floors(series: &[&[f32]], signed: bool) -> Vec<f64> {
     let least = |series: &&[f32]| {
-        let sizes = series.iter().map(|pressure| pressure.abs()).filter(|size| *size > 0.0);
+        let sizes = series.iter().map(|pressure| size(*pressure, signed)).filter(|size| *size > 0.0);
         f64::from(sizes.reduce(f32::min).unwrap_or(0.0)).sqrt()
     };
     series.par_iter().map(least).collect()
@@ -24,14 +25,14 @@ pub(super) fn typical_floor(floors: &[f64], scales: &[f64]) -> f64 {
     median(both.map(|(floor, scale)| floor / scale).collect())
 }
 
-/// At most so many samples, spread over those at which the root mean square of all roots is above the floor. In: pressures, and the
-/// floor of each sensor.
-pub(super) fn telling_samples(series: &[&[f32]], floors: &[f64], most: usize) -> Vec<usize> {
+/// At most so many samples, spread over those at which the root mean square of all roots is above the floor. In: pressures, whether
+/// negative ones are signal, and the floor of each sensor.
+pub(super) fn telling_samples(series: &[&[f32]], signed: bool, floors: &[f64], most: usize) -> Vec<usize> {
     let samples = series.first().map_or(0, |series| series.len());
     let mean = |series: &&[f32]| {
         let known = series.iter().filter(|pressure| !pressure.is_nan());
-        let (sum, count) =
-            known.fold((0.0, 0), |(sum, count), pressure| (sum + f64::from(pressure.abs()), count + 1));
+        let (sum, count) = known
+            .fold((0.0, 0), |(sum, count), pressure| (sum + f64::from(size(*pressure, signed)), count + 1));
         sum / f64::from(count.max(1))
     };
     let means: Vec<f64> = series.par_iter().map(mean).collect();
@@ -40,13 +41,13 @@ pub(super) fn telling_samples(series: &[&[f32]], floors: &[f64], most: usize) ->
     let is_telling = |t: &usize| {
         let missing = series.iter().filter(|series| series[*t].is_nan()).count();
         let own = series.iter().zip(&means).filter(|(series, mean)| **mean > 0.0 && !series[*t].is_nan());
-        let size: f64 = own.map(|(series, mean)| f64::from(series[*t].abs()) / mean).sum();
-        size > least * (series.len() - missing) as f64
+        let total: f64 = own.map(|(series, mean)| f64::from(size(series[*t], signed)) / mean).sum();
+        total > least * (series.len() - missing) as f64
     };
     let telling: Vec<usize> = (0..samples).into_par_iter().filter(is_telling).collect();
     // Sensors with few levels may feel nothing above their least.
     if telling.is_empty() {
-        return felt_samples(series, most);
+        return felt_samples(series, signed, most);
     }
     stratified(telling.len(), most).map(|at| telling[at]).collect()
 }
@@ -61,8 +62,8 @@ mod tests {
             |t: u16, least: f32| Some((f32::from(t) / 50.0).powi(2)).filter(|p| *p >= least).unwrap_or(0.0);
         let series = |least: f32| (1..=100).map(|t| touch(t, least)).collect::<Vec<f32>>();
         let found = |one: &[f32], other: &[f32]| {
-            let own = floors(&[one, other]);
-            let count = telling_samples(&[one, other], &own, 1000).len();
+            let own = floors(&[one, other], false);
+            let count = telling_samples(&[one, other], false, &own, 1000).len();
             (own, count)
         };
         let smooth = series(0.0);
@@ -70,6 +71,7 @@ mod tests {
         // Sensors that feel from samples 50 and 75 on. Both roots are above the floors, in units of each, from sample 83 on.
         assert_eq!(found(&series(1.0), &series(2.25)), (vec![1.0, 1.5], 18));
         assert_eq!((typical_floor(&[], &[]), typical_floor(&[1.0], &[0.0])), (0.0, 0.0));
-        assert_eq!(floors(&[&[0.0, 0.0], &[-4.0, 0.0]]), [0.0, 2.0]);
+        assert_eq!(floors(&[&[0.0, 0.0], &[-4.0, 0.0]], true), [0.0, 2.0]);
+        assert_eq!(floors(&[&[9.0, 0.0], &[-4.0, 0.0]], false), [3.0, 0.0]);
     }
 }

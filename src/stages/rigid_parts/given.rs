@@ -11,7 +11,7 @@ use super::faces::faces;
 use super::factorisation::MAX_RANK;
 use super::parts::MIN_FELT;
 use super::prepared::{Prepared, series_of};
-use super::roots::Roots;
+use super::roots::{Roots, size};
 use super::stratified::stratified;
 use super::subspace::{MotionSubspace, ROTATION_RANK};
 use crate::stages::sense::Tactile;
@@ -34,7 +34,7 @@ pub(crate) fn motions_of_parts(
     rank: Option<usize>,
 ) -> BTreeMap<usize, MotionSubspace> {
     let series: Vec<&[f32]> = tactile.series().collect();
-    let parts: BTreeMap<usize, Faces> = members(&series, labels)
+    let parts: BTreeMap<usize, Faces> = members(&series, signed, labels)
         .into_par_iter()
         .map(|(label, own)| {
             (label, if rank.is_some() { Faces::together(own) } else { Faces::apart(&series, own, signed) })
@@ -72,9 +72,11 @@ pub(crate) fn motions_of_parts(
 }
 
 /// The sensors of each part that feel enough; if none does, those that feel anything.
-fn members(series: &[&[f32]], labels: &[Option<usize>]) -> BTreeMap<usize, Vec<usize>> {
-    let felt: Vec<usize> =
-        series.par_iter().map(|own| own.iter().filter(|pressure| pressure.abs() > 0.0).count()).collect();
+fn members(series: &[&[f32]], signed: bool, labels: &[Option<usize>]) -> BTreeMap<usize, Vec<usize>> {
+    let felt: Vec<usize> = series
+        .par_iter()
+        .map(|own| own.iter().filter(|pressure| size(**pressure, signed) > 0.0).count())
+        .collect();
     let mut parts: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
     for (sensor, label) in labels.iter().enumerate() {
         if let Some(label) = label {

@@ -4,7 +4,7 @@
 
 use rayon::prelude::*;
 
-use super::cluster::{Cluster, ROUNDING};
+use super::cluster::{Cluster, MAX_SENSORS, ROUNDING};
 use super::search::{EXPLAINED, Search};
 use super::separation::{LEVELS, MAX_ROUNDS, explaining};
 use super::stratified::stratified;
@@ -12,7 +12,7 @@ use super::stratified::stratified;
 /// How many times more a cluster may leave with more sensors than without. A sensor of another part adds more.
 const MORE: f64 = 1000.0;
 /// Sensors that a cluster may grow by at once, and those of the cluster that are learned with them.
-const MAX_GROUP: usize = 24;
+const MAX_GROUP: usize = MAX_SENSORS / 2;
 /// Fewest sensors that a cluster grows by if it did not explain them before. Any cluster of less than six motions explains one.
 const MIN_GROUP: usize = 2;
 

@@ -1,4 +1,4 @@
-//! Part samples into those at which some sensors move less, and those at which they move more.
+//! Split samples into a slower and a faster half, by how much some sensors move.
 
 use faer::Mat;
 

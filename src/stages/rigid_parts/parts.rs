@@ -29,14 +29,14 @@ pub(super) const MIN_FELT: usize = 4 * MAX_RANK;
 pub struct RigidParts {
     /// The part of each sensor, 0, 1, … in order of appearance.
     pub labels: Vec<usize>,
-    /// The residual of each sensor by the motion of its part; 0 for one that is or was unassigned.
+    /// The residual of each sensor by the motion of its part; 0 if it is unassigned, or was assigned by the joints.
     pub residuals: Vec<f64>,
     /// For each sensor, the other parts and its residual by their motions, the smallest first.
     pub alternatives: Vec<Vec<(usize, f64)>>,
     /// Labels of clusters that feel too little to be parts: they are on other parts, but their motion does not say on which. The
     /// joints do, and [`estimate`](crate::estimate::estimate) leaves none.
     pub unassigned: Vec<usize>,
-    /// The motion of each part at all T samples, by its label.
+    /// The motion of each part at all T samples, by its label; none once joints have assigned what was unassigned.
     pub(crate) motions: BTreeMap<usize, MotionSubspace>,
 }
 

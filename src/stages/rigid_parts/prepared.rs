@@ -32,9 +32,9 @@ impl<'a> Prepared<'a> {
     /// Of M × T pressures, of which those of `sensors` are searched.
     pub(super) fn new(tactile: &'a Tactile, signed: bool, sensors: &[usize]) -> Self {
         let series: Vec<&[f32]> = tactile.series().collect();
-        let floors = floors(&series);
+        let floors = floors(&series, signed);
         let searched: Vec<f64> = sensors.iter().map(|&sensor| floors[sensor]).collect();
-        let samples = telling_samples(&series_of(&series, sensors), &searched, MAX_SAMPLES);
+        let samples = telling_samples(&series_of(&series, sensors), signed, &searched, MAX_SAMPLES);
         let roots = Roots::at(&series, &samples, signed);
         let scales = roots.scales();
         let floor = typical_floor(&floors, &scales);

@@ -18,8 +18,13 @@ const FELT: f64 = 0.1;
 /// Share of all absolute pressure from which on negative pressures are signal; less is taken as noise about 0.
 const SIGNED: f64 = 0.01;
 
-/// What is below a threshold, of it: less in single precision, too.
+/// Factor that puts a value just below a threshold, also after it is rounded to single precision.
 const BELOW: f64 = 1.0 - 1e-6;
+
+/// What a sensor feels of a pressure: its size, but 0 of a negative one that is noise about 0 (not `signed`). NaN is no size or 0.
+pub(super) fn size(pressure: f32, signed: bool) -> f32 {
+    if signed { pressure.abs() } else { pressure.max(0.0) }
+}
 
 /// Roots of the pressures on some sensors at some samples.
 pub(crate) struct Roots {

@@ -4,7 +4,7 @@ use faer::Mat;
 use rayon::prelude::*;
 
 use super::factorisation::Fit;
-use super::roots::Roots;
+use super::roots::{Roots, size};
 use super::stratified::stratified;
 
 /// Sensors that are used, spread over all: enough for rank six.
@@ -47,7 +47,8 @@ impl MotionSubspace {
     pub(crate) fn of_cluster(series: &[&[f32]], signed: bool) -> Self {
         let series: Vec<&[f32]> =
             stratified(series.len(), MAX_SENSORS).map(|sensor| series[sensor]).collect();
-        let Some(fit) = learn(&Roots::at(&series, &felt_samples(&series, MAX_SAMPLES), signed)) else {
+        let Some(fit) = learn(&Roots::at(&series, &felt_samples(&series, signed, MAX_SAMPLES), signed))
+        else {
             return Self { rank: 0, basis: Vec::new() };
         };
         let loadings = fit.loadings();
@@ -117,11 +118,13 @@ impl MotionSubspace {
     }
 }
 
-/// At most so many samples, spread over those at which a sensor feels anything.
-pub(super) fn felt_samples(series: &[&[f32]], most: usize) -> Vec<usize> {
+/// At most so many samples, spread over those at which a sensor feels anything. `signed`: whether negative pressures are signal.
+pub(super) fn felt_samples(series: &[&[f32]], signed: bool, most: usize) -> Vec<usize> {
     let samples = series.first().map_or(0, |series| series.len());
-    let felt: Vec<usize> =
-        (0..samples).into_par_iter().filter(|t| series.iter().any(|series| series[*t].abs() > 0.0)).collect();
+    let felt: Vec<usize> = (0..samples)
+        .into_par_iter()
+        .filter(|t| series.iter().any(|series| size(series[*t], signed) > 0.0))
+        .collect();
     stratified(felt.len(), most).map(|at| felt[at]).collect()
 }
 

@@ -1,11 +1,11 @@
 //! Run one Gibbs sweep of the DPGMM or the DPGMM-LJ (algorithm 1, equations 15 to 22).
 //!
-//! Order as in the paper: z, then (μ, Σ), then π, then the joints q and the tree C. (μ, Σ) of a component
-//! are drawn together, which has the same target as drawing one given the other. All but the last update
-//! are draws from full conditionals under the weak-limit approximation (Ishwaran & Zarepour 2002). The
-//! last is not: C is set to the tree of highest probability instead of being drawn, as the paper does, so
-//! that the chain is only approximately a Gibbs sampler of the DPGMM-LJ ("approximate Gibbs sampling",
-//! section 3.3). With the tree held fixed it is exact.
+//! The order is z, (μ, Σ), π, then the joints q and the tree C. The paper has q before π; neither depends on the other. (μ, Σ) of
+//! a component are drawn together, which has the same target as drawing one given the other. z, (μ, Σ) and π are draws from full
+//! conditionals under the weak-limit approximation (Ishwaran & Zarepour 2002). C is not: it is set to the tree of highest probability
+//! instead of being drawn, as the paper does, so that the chain is only approximately a Gibbs sampler of the DPGMM-LJ ("approximate
+//! Gibbs sampling", section 3.3). With `pairwise` edge weights, the joints that are kept are those of the chosen edges, so that q is
+//! no draw from its conditional, either. With the tree held fixed the sweep is exact.
 //!
 //! The first author's code has the same order but for π and (μ, Σ), which do not depend on each other; where
 //! else it departs from the equations, [`Departures`] say.
@@ -23,7 +23,7 @@ use super::settings::{Model, Schema, Start};
 use crate::stages::mixture::{
     Gaussian, NormalInverseWishart, Points, SufficientStatistics, assignments, lloyd,
 };
-use crate::stages::tree::{Edge, prim};
+use crate::stages::tree::{Edge, shortest};
 
 /// The state of one chain.
 pub struct Chain<'a> {
@@ -163,7 +163,7 @@ impl<'a> Chain<'a> {
         self.tree.update(update, rng)
     }
 
-    /// The active components: those of more than one point (section 3.2).
+    /// The active components: those of more than one point (section 3.2), or as many as `schema.authors.smallest_part` says.
     pub fn active(&self) -> Vec<usize> {
         let smallest = self.departures.smallest_part as f64;
         (0..self.statistics.len()).filter(|&k| self.statistics[k].count() >= smallest).collect()
@@ -176,7 +176,7 @@ impl<'a> Chain<'a> {
             Model::DpgmmLj => self.tree.joints.iter().map(|joint| joint.edge).collect(),
             Model::Dpgmm => {
                 let means: Vec<DVector<f64>> = self.gaussians.iter().map(Gaussian::mean).collect();
-                prim(&self.active(), |a, b| means[a].metric_distance(&means[b]))
+                shortest(&self.active(), &means)
             }
         }
     }
@@ -188,7 +188,7 @@ impl<'a> Chain<'a> {
 
     /// log p(x, z) with π and all (μ, Σ) integrated out, all constants included.
     ///
-    /// Both models use that of the DPGMM, so that their draws can be compared. The joints are left out: with them, μ
+    /// Both models use that of the DPGMM, so that their posterior samples can be compared. The joints are left out: with them, μ
     /// and Σ cannot be integrated in closed form.
     ///
     /// # Errors

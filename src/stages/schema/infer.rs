@@ -13,14 +13,15 @@ use crate::numerics::rng::{Stream, stream};
 use crate::stages::body_map::BodyMap;
 use crate::stages::mixture::{NormalInverseWishart, Points};
 
-/// Runs `settings.chains` independent chains on a body map (M × d) and returns the draws that are kept, ordered by chain
-/// and sweep.
+/// Runs `settings.chains` independent chains on a body map (M × d) and returns the posterior samples that are kept, ordered
+/// by chain and sweep.
 ///
 /// Chain c of a map in d dimensions has the stream (seed, simulation, "model d", c). Calls `tick` once for each finished
 /// chain.
 ///
 /// # Errors
-/// [`InferenceError`] if the map spans fewer than d dimensions, or is too large for the memory.
+/// [`InferenceError`] if the map spans fewer than d dimensions or too large a range, a matrix is numerically singular, or the samples
+/// would not fit the memory.
 pub fn infer(
     map: &BodyMap,
     model: Model,
@@ -65,11 +66,14 @@ fn target<'a>(
     Target { points, prior, concentration, model, neighbours: Neighbours::of(points) }
 }
 
-/// The posterior of the tree over the parts of a partition of a body map's sensors, labels 0 to K − 1, with the prior that
-/// the settings ask for. Its stream is (seed, simulation, "tree d", 0).
+/// The posterior of the tree over the parts of a partition of a body map's sensors, labels 0 to K − 1, each of which occurs, with the
+/// prior that the settings ask for. Its stream is (seed, simulation, "tree d", 0).
 ///
 /// # Errors
 /// As for [`infer`].
+///
+/// # Panics
+/// If a label does not occur.
 pub fn tree_over(
     map: &BodyMap,
     labels: &[usize],
@@ -89,7 +93,7 @@ trait State {
     /// Updates every variable once.
     fn sweep(&mut self, rng: &mut Stream) -> Result<(), InferenceError>;
 
-    /// The state as a draw of a chain after a sweep.
+    /// The state after a sweep, as a posterior sample of a chain.
     fn draw(&self, chain: usize, sweep: usize, rng: &mut Stream) -> Result<Sample, InferenceError>;
 }
 
@@ -143,7 +147,7 @@ fn check_size(map: &BodyMap, settings: &Schema) -> Result<(), InferenceError> {
     Ok(())
 }
 
-/// Runs all sweeps of one chain, and returns the draws that are kept.
+/// Runs all sweeps of one chain, and returns the posterior samples that are kept.
 fn run_chain(
     chain: usize,
     mut state: impl State,

@@ -6,11 +6,12 @@ use super::error::InferenceError;
 use super::settings::{Prior, Schema};
 use crate::stages::mixture::{NormalInverseWishart, Points};
 
-/// The prior NIW(m₀, k₀, Ψ₀, ν₀): m₀ the mean of the points, ν₀ − d and k₀ by the settings, and one of three scales Ψ₀.
+/// The prior NIW(m₀, k₀, Ψ₀, ν₀). m₀ is the mean of the points; k₀ and ν₀ − d are `schema.mean_weight` and `schema.extra_freedom`. Ψ₀ is
+/// `schema.scale` times one of these:
 ///
-/// * Fraley & Raftery (2007), section 3.2: Ψ₀ = covariance / K^(2/d), with k₀ = 0.01 and ν₀ = d + 2.
-/// * The identity, which the first author's code has, with k₀ = 0.1 and ν₀ = d + 1: so the unit of the map matters.
-/// * The inverse covariance, 10 times, which a comment in that code has.
+/// * covariance / K^(2/d): Fraley & Raftery (2007), section 3.2, who take k₀ = 0.01 and ν₀ = d + 2;
+/// * the identity: the first author's code, with k₀ = 0.1 and ν₀ = d + 1, so that the unit of the map matters;
+/// * the inverse covariance: a comment in that code suggests 10 times it.
 ///
 /// # Errors
 /// [`InferenceError::Flat`] if the covariance is singular where the scale needs it, [`InferenceError::Scale`] if the

@@ -12,17 +12,18 @@ pub struct Sample {
     pub chain: usize,
     /// Number of the sweep after which the state was kept, from 1.
     pub sweep: usize,
-    /// z: the component of each of the M sensors, 0 to K − 1.
+    /// z: the component of each of the M sensors, from 0. It is below K, but for the split–merge sampler, which is not truncated.
     pub labels: Vec<usize>,
-    /// C: the tree over the active components, those of more than one sensor.
+    /// C: the tree over the active components ([`super::Chain::active`]); with the split–merge sampler, over all clusters.
     pub tree: Vec<Edge>,
-    /// q of each edge of the tree: d coordinates on the body map. Empty for a DPGMM, which has no joints.
+    /// q of each edge of the tree: d coordinates on the body map. Empty for a DPGMM, which has no joints, and for the split–merge
+    /// sampler, which integrates them out.
     pub joints: Vec<Vec<f64>>,
     /// log p(x, z), see [`super::Chain::log_posterior`]; `None` without a body map.
     pub log_posterior: Option<f64>,
 }
 
-/// The posterior sample of highest log posterior; the first of equal ones.
+/// The posterior sample of highest log p(x, z), in which joints do not count; the first of equal ones.
 ///
 /// # Panics
 /// If `draws` is empty.

@@ -22,7 +22,7 @@ use crate::stages::mixture::{
 use crate::stages::schema::joints::draw_between;
 use crate::stages::schema::settings::Model;
 use crate::stages::schema::weighted_trees::WeightedGraph;
-use crate::stages::tree::Edge;
+use crate::stages::tree::{Edge, shortest};
 
 /// A move over the clusters of a few points, its ends.
 #[derive(Debug, Clone, Copy)]
@@ -362,13 +362,18 @@ impl<'a> SplitMerge<'a> {
         }
     }
 
-    /// A tree over the clusters.
+    /// A tree over the clusters, drawn; for the DPGMM that of Prim's algorithm over those of more than one point.
     ///
     /// # Errors
     /// As for [`Self::start`].
     pub(crate) fn edges(&self, rng: &mut impl Rng) -> Result<Vec<Edge>, Rounding> {
-        let tree = self.draw_tree(rng)?;
-        Ok(tree.into_iter().map(|(child, parent)| Edge { child, parent }).collect())
+        if self.target.model == Model::Dpgmm {
+            let means: Vec<_> = self.clusters.iter().map(|own| own.gaussian().mean()).collect();
+            let nodes: Vec<usize> =
+                (0..means.len()).filter(|&k| self.clusters[k].members.len() > 1).collect();
+            return Ok(shortest(&nodes, &means));
+        }
+        Ok(self.draw_tree(rng)?.into_iter().map(|(child, parent)| Edge { child, parent }).collect())
     }
 
     /// log p(x, z) of the Dirichlet-process mixture, with π and all (μ, Σ) integrated out and the joints left out.

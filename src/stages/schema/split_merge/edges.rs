@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::chain::{SplitMerge, Target};
+use crate::numerics::partition::sizes;
 use crate::numerics::rng::Stream;
 use crate::stages::mixture::Rounding;
 
@@ -43,6 +44,7 @@ pub(crate) fn tree_given(
         }
     }
     let parts = labels.iter().max().map_or(0, |largest| largest + 1);
+    assert_eq!(sizes(labels).len(), parts, "each label from 0 to K − 1 must occur");
     let mut probabilities = vec![0.0; parts * parts];
     for graph in &graphs {
         let own = graph.edge_probabilities();

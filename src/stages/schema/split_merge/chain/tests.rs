@@ -242,3 +242,22 @@ fn the_chain_visits_every_partition_of_six_points_with_every_tree_as_often_as_th
 }
 
 mod joint_distribution;
+
+/// Four clusters in a row, so that the tree over their means is the row itself.
+#[test]
+fn without_joints_the_tree_is_that_of_the_means() {
+    let place = |i: usize| (5 * (i / 6)) as f64 + 0.01 * (i % 6) as f64;
+    let (points, prior) = line(&(0..24).map(place).collect::<Vec<f64>>());
+    let labels: Vec<usize> = (0..24).map(|i| i / 6).collect();
+    let rng = &mut stream(1, 1, "tree of means", 0);
+    let target = target(&points, &prior, Model::Dpgmm);
+    let chain = SplitMerge::start(&target, &labels, rng).unwrap();
+    let mut edges: Vec<(usize, usize)> = chain
+        .edges(rng)
+        .unwrap()
+        .iter()
+        .map(|edge| (edge.child.min(edge.parent), edge.child.max(edge.parent)))
+        .collect();
+    edges.sort_unstable();
+    assert_eq!(edges, [(0, 1), (1, 2), (2, 3)]);
+}
