@@ -64,8 +64,11 @@ impl Search {
 
     /// The clusters that take in the sensors of one, with these, if together that costs less.
     ///
-    /// First each sensor goes where its residual is the smallest. Then groups of sensors go where they cost the least: they may be all
-    /// that tells a part of a direction, so that it explains none of them before it has them.
+    /// First each sensor goes where its residual is the smallest. This is tried if others explain most of them, or one motion does not
+    /// explain the cluster itself, which then is no part anyway. Then groups of sensors go where they cost the least: they may be all that
+    /// tells a part of a direction, so that it explains none of them before it has them. Such faces feel few directions, and one motion
+    /// explains them within the tolerance. What it explains less well may be a part that hardly moves against its neighbours, so that
+    /// each could take a group of it: groups of such a cluster stay.
     fn unions(&self, own: &Kept, others: &[(usize, &Kept)]) -> Option<Vec<(usize, Cluster)>> {
         let sensors = &own.cluster.sensors;
         let best = |&sensor: &usize| smallest(others.iter().map(|(_, other)| other.residuals[sensor]));
@@ -73,10 +76,15 @@ impl Search {
         let is_explained = |least: f64| least <= EXPLAINED * self.felt.tolerance;
         let explained = by_residual.iter().filter(|(_, least)| is_explained(*least)).count();
         let mut places: Vec<usize> = by_residual.into_iter().map(|(place, _)| place).collect();
-        // What one motion does not explain is no part anyway.
-        let is_tried = 2 * explained > sensors.len() || self.explaining(sensors.clone()).is_none();
+        // What one motion leaves of the cluster, if it explains it.
+        let left = OnceLock::new();
+        let left = || left.get_or_init(|| self.explaining(sensors.clone()).map(|own| own.variance()));
+        let is_tried = 2 * explained > sensors.len() || left().is_none();
         if is_tried && let Some(unions) = self.shorter(own, others, &places) {
             return Some(unions);
+        }
+        if left().is_some_and(|left| left > self.felt.tolerance) {
+            return None;
         }
         let mut is_new = false;
         for group in self.groups(&own.cluster) {

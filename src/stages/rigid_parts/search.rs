@@ -25,10 +25,12 @@ pub(super) const PIECE: f64 = 0.6;
 const NEIGHBOURS: usize = 5;
 /// Nats per sample that a merge must save, and a cluster against two pieces of it.
 pub(super) const MIN_SAVING: f64 = 0.3;
-/// Largest residual variance of a part, and of a seed cluster, in units of the tolerance.
+/// Largest residual variance of a part, in units of the tolerance.
 pub(super) const EXPLAINED: f64 = 5.0;
+/// The same of a seed cluster.
 const MIXED: f64 = 10.0;
-/// The same of a sensor that is in no cluster. With noise it is more than any residual.
+/// The same of a sensor that is in no cluster, which with noise is more than any residual; and of a cluster that more iterations may
+/// explain.
 const LEFT: f64 = 30.0;
 /// The tolerance, the residual variance that is encoded as noise is: the least and the largest.
 const TOLERANCE: [f64; 2] = [LEAST_TOLERANCE, 5e-2];
@@ -187,14 +189,14 @@ impl Search {
         self.explains(union)
     }
 
-    /// Whether the motion of a cluster explains it, or whatever it feels.
+    /// Whether the motion of a cluster explains it, or has too few degrees of freedom to tell.
     pub(super) fn explains(&self, cluster: &Cluster) -> bool {
         cluster.variance() <= EXPLAINED * self.felt.tolerance || cluster.freedom <= 0.5
     }
 
     /// A cluster, unless its first iterations leave so much that more would not explain it. Below the least tolerance, only more tell.
     pub(super) fn may_be_one(&self, cluster: Cluster) -> Option<Cluster> {
-        let is_near = cluster.variance() <= MIXED * self.felt.tolerance || self.explains(&cluster);
+        let is_near = cluster.variance() <= LEFT * self.felt.tolerance || self.explains(&cluster);
         (is_near || self.felt.tolerance < LEAST_TOLERANCE).then_some(cluster)
     }
 
