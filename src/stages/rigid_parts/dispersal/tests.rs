@@ -26,11 +26,17 @@ enum Faces {
 /// Two parts on a hinge move along five directions that both have in common, and the hinge turns each by itself. A third part moves with
 /// neither.
 fn search(faces: Faces) -> Search {
+    search_with_errors(faces, 0.0)
+}
+
+/// The same, with errors of up to this size at the faces.
+fn search_with_errors(faces: Faces, error: f64) -> Search {
     let mut rng = stream(9, 1, "dispersal", 0);
     let mut uniform = |rows, columns| Mat::from_fn(rows, columns, |_, _| rng.random_range(-1.0_f64..1.0));
     let (both, turns) = (uniform(SAMPLES, 5), uniform(SAMPLES, 2));
     let other = product(uniform(SAMPLES, 6).as_ref(), uniform(6, SENSORS).as_ref());
     let loadings = uniform(6, 2 * SENSORS);
+    let errors = uniform(SAMPLES, 2 * SENSORS);
     let on_hinge = |t: usize, sensor: usize| {
         let is_on_face = sensor % SENSORS < FACE;
         let (share, directions) = match (faces, is_on_face) {
@@ -45,7 +51,8 @@ fn search(faces: Faces) -> Search {
             (Faces::Only, true) => 1.0,
             (Faces::AlikeOnBoth, true) => 0.0,
         };
-        common + turns[(t, sensor / SENSORS)] * turn
+        let error = if is_on_face { error * errors[(t, sensor)] } else { 0.0 };
+        common + turns[(t, sensor / SENSORS)] * turn + error
     };
     search_of(&Mat::from_fn(SAMPLES, 3 * SENSORS, |t, sensor| {
         if sensor < 2 * SENSORS { on_hinge(t, sensor) } else { other[(t, sensor - 2 * SENSORS)] }
@@ -108,6 +115,24 @@ fn faces_that_alone_feel_a_direction_go_each_to_its_part() {
     let all = [rest(0), rest(1)].map(|rest| explained(&search, &both, &rest));
     assert!(2 * all.iter().sum::<usize>() <= both.len(), "{all:?}");
     assert_eq!(dispersed(&mut search, &[rest(0), rest(1), both, part(2)]), [part(0), part(1), part(2)]);
+}
+
+#[test]
+fn what_one_motion_explains_with_errors_stays() {
+    let mut search = search_with_errors(Faces::Only, 0.02);
+    let both = [face(0), face(1)].concat();
+    let cluster = search.learned(both.clone());
+    assert!(
+        search.explains(&cluster) && cluster.variance() > search.felt.tolerance,
+        "{}",
+        cluster.variance()
+    );
+    let clusters = [rest(0), rest(1), both, part(2)];
+    let mut found = dispersed(&mut search, &clusters);
+    found.sort();
+    let mut expected = clusters.to_vec();
+    expected.sort();
+    assert_eq!(found, expected);
 }
 
 #[test]
