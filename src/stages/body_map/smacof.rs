@@ -120,7 +120,8 @@ impl<'a> Majorisation<'a> {
         Self { distances, map, within, monotone }
     }
 
-    /// The Guttman transform of nonmetric scaling (the file `guttman.rs` has that of metric scaling, and tests hold both equal), x_i ← Σ_j (d̂_ij / d_ij)(x_i − x_j) / n, and then the disparities of the new map.
+    /// The Guttman transform, x_i ← Σ_j (d̂_ij / d_ij)(x_i − x_j) / n, and then the disparities of the new map. Metric scaling has one of
+    /// its own, in `guttman.rs`; tests hold both equal.
     ///
     /// Points that coincide do not move each other, as Borg & Groenen (2005, chapter 8) have it.
     pub fn step(&mut self) {
