@@ -1,0 +1,45 @@
+//! Test the verdict, and what sensors that rest a little below 0 give.
+
+use std::collections::BTreeMap;
+
+use super::*;
+
+#[test]
+fn a_short_recording_is_doubtful_and_one_that_repeats_does_not_fit_however_much_is_explained() {
+    let fit = |samples: usize, novelty: f64| {
+        let pressures = (0..12 * samples).map(|at| (at % 7) as f32).collect();
+        let recording = Recording::new(Tactile { samples, pressures });
+        let parts = RigidParts {
+            labels: vec![0; 12],
+            residuals: vec![0.0; 12],
+            alternatives: vec![Vec::new(); 12],
+            unassigned: Vec::new(),
+            motions: BTreeMap::new(),
+        };
+        Fit::new(&parts, &recording, novelty, novelty < SIMILAR)
+    };
+    assert_eq!(fit(SHORT, 0.1).verdict, Verdict::Good);
+    assert_eq!((fit(SHORT, 1e-4).verdict, fit(SHORT, 1e-4).cause), (Verdict::DoesNotFit, Some(REPETITION)));
+    let similar = fit(SHORT, 0.01);
+    assert_eq!((similar.verdict, similar.cause), (Verdict::Doubtful, Some(SIMILARITY)));
+    let short = fit(SHORT - 1, 0.1);
+    assert_eq!((short.verdict, short.explained), (Verdict::Doubtful, 1.0));
+    assert!(short.cause.is_some());
+}
+
+#[test]
+fn sensors_that_rest_a_little_below_0_feel_nothing_there() {
+    let samples = 400;
+    let touch = |sensor: usize, t: usize| match t % 10 {
+        0 => 2000.0 * (1.0 + ((7 * t + 13 * sensor) % 29) as f32 / 29.0),
+        _ => -1.0 - t as f32 / samples as f32,
+    };
+    let pressures = (0..24).flat_map(|sensor| (0..samples).map(move |t| touch(sensor, t))).collect();
+    let recording = Recording::new(Tactile { samples, pressures });
+    assert!(!recording.signed);
+    let levels =
+        crate::settings::Settings::load_over(Some(crate::settings::Base::ESTIMATE), None).unwrap().quantise;
+    let rng = &mut crate::numerics::rng::stream(1, 1, "co-motion", 0);
+    let found = estimate(&recording, &levels, rng, &|| ()).unwrap();
+    assert!(found.parts.residuals.iter().all(|residual| residual.is_finite()));
+}
