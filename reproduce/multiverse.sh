@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # The multiverse that contains today's default: multiverse.toml, its surroundings (-near) and held-out movements (-held-out).
-# Takes some 15 core-hours, in shards of four movements. Stop it at any time, and run it again: what is finished is not run again, and
-# of the rest at most one movement for each thread is lost. The shards finished so far are at any time an even sample of the design.
+# Takes some 25 core-hours with AVX-512, and up to four times as long without, in shards of four movements. Stop it at any time, and run
+# it again: what is finished is not run again, and of the rest at most one movement for each thread is lost. The shards finished so far are
+# at any time an even sample of the design.
 #
 #   reproduce/multiverse.sh            # runs what is left
 #   reproduce/multiverse.sh status     # how many shards are finished
@@ -10,7 +11,7 @@
 #   reproduce/multiverse.sh gather     # tables and pictures of all finished shards; multiverse.py makes the page of them
 #
 # OUT is the folder of results (results/multiverse), PROGRAM the program (target/release/bodyschema; built if it is missing), and
-# JOBS the number of threads (2). A shard takes 5 minutes to 2 hours on two cores.
+# JOBS the number of threads (2). A shard takes half an hour to two hours on two cores.
 set -euo pipefail
 root=$(CDPATH= cd -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")/.." && pwd)
 out=${OUT:-$root/results/multiverse}
