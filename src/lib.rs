@@ -42,7 +42,7 @@
 //! let map = ClassicalScaling::new(&distances, 9)?.coordinates(9)?; // 840 points in 9 dimensions
 //! let draws = infer(&map, Model::DpgmmLj, schema, seed, simulation, &|| ())?;
 //!
-//! let best = best(&draws); // the draw of highest log posterior
+//! let best = best(&draws); // the posterior sample of highest log p(x, z)
 //! for edge in &best.tree {
 //!     println!("component {} is joined to component {}", edge.child, edge.parent);
 //! }

@@ -1,4 +1,4 @@
-//! Compose the stages: from settings to body maps, and from body maps to evaluated draws. Read this file first.
+//! Compose the stages: from settings to body maps, and from body maps to evaluated posterior samples. Read this file first.
 
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};

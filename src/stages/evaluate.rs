@@ -16,7 +16,7 @@ use crate::stages::tree::{Edge, Truth};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Evaluate {
-    /// Minimum adjusted Rand index of an eligible draw, whose tree counts for the success rate.
+    /// Minimum adjusted Rand index of an eligible posterior sample, whose tree counts for the success rate.
     pub eligible_ari: f64,
 }
 
@@ -31,12 +31,12 @@ impl Evaluate {
     }
 }
 
-/// How good one draw is.
+/// How good one posterior sample is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Score {
     /// Adjusted Rand index of its partition, at most 1.
     pub ari: f64,
-    /// Whether its tree counts for the success rate: the draw has the true number of parts, and an ARI of at least
+    /// Whether its tree counts for the success rate: the sample has the true number of parts, and an ARI of at least
     /// `evaluate.eligible_ari`.
     pub eligible: bool,
     /// Whether its tree is the true one, under the matching of its clusters to the parts.

@@ -5,7 +5,7 @@ use crate::stages::mixture::Rounding as RoundingError;
 /// Maximum number of entries in one matrix of all components together, 80 MB; a chain holds a few such matrices.
 const MAX_MATRIX_ENTRIES: usize = 10_000_000;
 
-/// Maximum number of labels in all draws that are kept, 8 GB.
+/// Maximum number of labels in all posterior samples that are kept, 8 GB.
 pub(super) const MAX_LABELS: usize = 1_000_000_000;
 
 /// Whether the d × d matrices of K components fit the memory: K d² is at most 10 million.

@@ -1,4 +1,4 @@
-//! Run independent chains on a body map and keep their draws (section 3).
+//! Run independent chains on a body map and keep their posterior samples (section 3).
 
 use rayon::prelude::*;
 

@@ -1,4 +1,4 @@
-//! Stage 6, `infer`: draws of the body schema by the DPGMM-LJ or the DPGMM (section 3).
+//! Stage 6, `infer`: posterior samples of the body schema by the DPGMM-LJ or the DPGMM (section 3).
 //!
 //! In: a [`BodyMap`](super::body_map::BodyMap), M × d, and the settings [`Schema`]. Out: [`Sample`]s, each with the
 //! component of every sensor and the tree over the components.

@@ -139,9 +139,9 @@ pub struct Schema {
     pub sweeps: usize,
     /// Independent chains.
     pub chains: usize,
-    /// Which draws are kept.
+    /// Which posterior samples are kept.
     pub keep: Keep,
-    /// Sweeps dropped where every draw is kept.
+    /// Sweeps dropped where every posterior sample is kept.
     pub burn_in: usize,
     /// How the authors' code departs from the equations; they count where it is the sampler.
     pub authors: Departures,
@@ -156,7 +156,7 @@ impl Schema {
         }
     }
 
-    /// Number of draws that are kept.
+    /// Number of posterior samples that are kept.
     pub fn draws(&self) -> usize {
         match self.keep {
             Keep::Last => self.chains,
@@ -164,7 +164,7 @@ impl Schema {
         }
     }
 
-    /// Checks the range of each setting, and that the draws of `sensors` sensors are not too many to keep.
+    /// Checks the range of each setting, and that the posterior samples of `sensors` sensors are not too many to keep.
     ///
     /// # Errors
     /// The first setting that is outside its range.
