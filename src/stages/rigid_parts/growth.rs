@@ -11,7 +11,8 @@ use super::stratified::stratified;
 
 /// How many times more a cluster may leave with more sensors than without. A sensor of another part adds more.
 const MORE: f64 = 1000.0;
-/// Sensors that a cluster may grow by at once, and those of the cluster that are learned with them.
+/// Sensors that a cluster may grow by at once, and those of the cluster that are learned with them: so many that the motion is learned
+/// from all, since a sensor that it is not learned from has no residual.
 const MAX_GROUP: usize = MAX_SENSORS / 2;
 /// Fewest sensors that a cluster grows by if it did not explain them before. Any cluster of less than six motions explains one.
 const MIN_GROUP: usize = 2;
