@@ -289,7 +289,7 @@ def page(rows, design):
         "the axis, or meets it. Then it *feels the same* on the next part, and touch cannot tell where it belongs. A tree can be right all",
         "the same, since most sensors of a part count. Most sensors that are astray are of this kind. The most common fault is that they",
         "make a part of their own, though they fit their true part. Another one is that hinges whose axes meet are joined in the wrong order",
-        "(iiwa, alex): where they meet, three parts move alike.",
+        "(alex): where they meet, three parts move alike.",
         "",
     ]
     for row in wrong:

@@ -19,7 +19,7 @@ use crate::stages::tree::Truth;
 
 /// What the inference and its evaluation need of one simulation.
 #[derive(Debug, Clone)]
-pub struct Body {
+pub struct MappedBody {
     /// The true parts and tree, which the inference must not see.
     pub truth: Truth,
     /// The body maps; `None` where no sensor differs from another, as when nothing ever moves (p = 1).
@@ -32,16 +32,16 @@ pub struct Body {
 #[derive(Debug, Clone)]
 pub struct Mapped {
     /// What the inference needs.
-    pub body: Body,
+    pub body: MappedBody,
     /// The information metric between all sensors.
     pub distances: Distances,
     /// How well the distances could be mapped.
-    pub facts: Facts,
+    pub facts: MapQuality,
 }
 
 /// How well the sensors of a simulated body could be mapped.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Facts {
+pub struct MapQuality {
     /// Sensors that showed one symbol throughout.
     pub constant_sensors: usize,
     /// How well the physics step resolved the movement.
@@ -230,7 +230,7 @@ pub fn map_distances(
         let (maps, improvements) = BodyMaps::new(&scaled, &scaling, &settings.map, dims, &random)?;
         (Some(maps), improvements)
     };
-    let facts = Facts {
+    let facts = MapQuality {
         constant_sensors,
         resolution: sensed.resolution,
         map_agreement: scaling.agreement(largest),
@@ -238,7 +238,7 @@ pub fn map_distances(
         improvements,
     };
     drop(scaled);
-    let body = Body { truth: sensed.truth.clone(), maps, resolution: sensed.resolution };
+    let body = MappedBody { truth: sensed.truth.clone(), maps, resolution: sensed.resolution };
     Ok(Mapped { body, distances, facts })
 }
 
@@ -265,7 +265,7 @@ pub struct Inference {
 /// # Errors
 /// If the map spans fewer than `dimension` dimensions.
 pub fn infer_and_score(
-    body: &Body,
+    body: &MappedBody,
     condition: Condition,
     settings: &Settings,
     simulation: usize,
@@ -306,7 +306,7 @@ pub fn infer_and_score(
 ///
 /// Where there is no body map, all sensors are in one cluster.
 pub fn cluster_and_score(
-    body: &Body,
+    body: &MappedBody,
     dimension: usize,
     settings: &Settings,
     simulation: usize,

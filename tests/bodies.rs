@@ -62,29 +62,28 @@ fn noise_costs_fewer_parts_if_it_counts_as_no_touch() {
     (settings.motion.coordination, settings.motion.epoch) = (0.5, 1000);
     (settings.physics.duration, settings.physics.step) = (1000.0, 0.005);
     let Settings { motion, physics, sense: tactile_sense, quantise, .. } = &settings;
-    for name in ["star", "chain-6"] {
-        let NamedBody { agent, .. } = read_body(&repository(format!("bodies/{name}.toml"))).unwrap();
-        let rng = &mut stream(11, 1, "motion", 0);
-        let trajectory = simulate(&agent, motion, physics, tactile_sense.interval, rng, &|| ()).unwrap();
-        let mut tactile = sense(&agent, &trajectory, tactile_sense);
-        for series in tactile.pressures.chunks_mut(tactile.samples) {
-            let squares: f32 = series.iter().map(|pressure| pressure * pressure).sum();
-            let deviation = 0.1 * (squares / series.len() as f32).sqrt();
-            for pressure in series {
-                let error: f32 = StandardNormal.sample(rng);
-                *pressure = (*pressure + deviation * error).max(0.0);
-            }
+    let NamedBody { agent, .. } = read_body(&repository("bodies/star.toml")).unwrap();
+    let rng = &mut stream(11, 1, "motion", 0);
+    let trajectory = simulate(&agent, motion, physics, tactile_sense.interval, rng, &|| ()).unwrap();
+    let mut tactile = sense(&agent, &trajectory, tactile_sense);
+    for series in tactile.pressures.chunks_mut(tactile.samples) {
+        let squares: f32 = series.iter().map(|pressure| pressure * pressure).sum();
+        let deviation = 0.1 * (squares / series.len() as f32).sqrt();
+        for pressure in series {
+            let error: f32 = StandardNormal.sample(rng);
+            *pressure = (*pressure + deviation * error).max(0.0);
         }
-        let agreement = |recording: &Recording| {
-            let found = estimate(recording, quantise, &mut stream(1, 1, "co-motion", 0), &|| ()).unwrap();
-            adjusted_rand_index(&found.parts.labels, &agent.labels())
-        };
-        let cleaned = Recording::new(tactile.clone());
-        assert_eq!(cleaned.noisy, agent.labels().len(), "{name}");
-        let as_felt = Recording { tactile, noisy: 0, ..cleaned.clone() };
-        let (felt, cut) = (agreement(&as_felt), agreement(&cleaned));
-        assert!(cut > 0.8 && cut > felt + 0.05, "{name}: {felt} with noise that is felt, {cut} without");
     }
+    let agreement = |recording: &Recording| {
+        let found = estimate(recording, quantise, &mut stream(1, 1, "co-motion", 0), &|| ()).unwrap();
+        adjusted_rand_index(&found.parts.labels, &agent.labels())
+    };
+    let cleaned = Recording::new(tactile.clone());
+    assert_eq!(cleaned.noisy, agent.labels().len());
+    let as_felt = Recording { tactile, noisy: 0, ..cleaned.clone() };
+    let (felt, cut) = (agreement(&as_felt), agreement(&cleaned));
+    // Without its cut, noise costs this body nearly half of its agreement.
+    assert!(cut > 0.95 && cut > felt + 0.25, "{felt} with noise that is felt, {cut} without");
 }
 
 #[test]

@@ -8,7 +8,7 @@ use bodyschema::files::tables::write_rows;
 use bodyschema::internals::markdown::{row, rule};
 use bodyschema::internals::statistics::{Estimate, mean, wilson};
 use bodyschema::internals::{Posterior, consensus};
-use bodyschema::pipeline::{Body, map_sensed, simulate_and_sense};
+use bodyschema::pipeline::{MappedBody, map_sensed, simulate_and_sense};
 use bodyschema::stages::body_map::MapOf;
 use bodyschema::stages::evaluate::{adjusted_rand_index, parts, score};
 use bodyschema::stages::schema::{Keep, Model, Schema, infer};
@@ -88,7 +88,7 @@ pub(crate) fn study(folder: &Path) -> Result<String, Box<dyn Error>> {
 
 /// Runs the chains of one body in one dimension.
 fn infer_all(
-    body: &Body,
+    body: &MappedBody,
     number: usize,
     schema: &Schema,
     condition: &mut Condition,

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::files::checkpoint::Checkpoints;
 use crate::files::{FileError, npy, sha256, tables};
-use crate::pipeline::{Body, Facts, Mapped};
+use crate::pipeline::{MapQuality, Mapped, MappedBody};
 use crate::settings::Settings;
 use crate::stages::body_map::BodyMaps;
 
@@ -14,7 +14,7 @@ use crate::stages::body_map::BodyMaps;
 #[derive(Debug, Clone)]
 pub(crate) struct Artifacts {
     /// How well its sensors could be mapped.
-    pub facts: Facts,
+    pub facts: MapQuality,
     /// Its files, within the folder of results.
     pub files: Vec<String>,
 }
@@ -32,7 +32,7 @@ pub(super) struct ArtifactFiles<'a> {
 /// Finished body maps: their files are the result, and a checkpoint keeps the hashes.
 #[derive(Serialize, Deserialize)]
 struct MappedFiles {
-    facts: Facts,
+    facts: MapQuality,
     files: Vec<(String, String)>,
 }
 
@@ -41,7 +41,11 @@ impl ArtifactFiles<'_> {
     ///
     /// # Errors
     /// If one cannot be written.
-    pub(super) fn write(&self, mapped: Mapped, with_distances: bool) -> Result<(Body, Artifacts), FileError> {
+    pub(super) fn write(
+        &self,
+        mapped: Mapped,
+        with_distances: bool,
+    ) -> Result<(MappedBody, Artifacts), FileError> {
         let Mapped { body, distances, facts } = mapped;
         let folder = self.out.join(self.name);
         let mut names = vec!["labels.csv".to_owned(), "tree.csv".to_owned()];
@@ -62,7 +66,7 @@ impl ArtifactFiles<'_> {
     }
 
     /// The body that an earlier run with these settings wrote, if its files are still what they were.
-    pub(super) fn recall(&self, settings: &Settings) -> Option<(Body, Artifacts)> {
+    pub(super) fn recall(&self, settings: &Settings) -> Option<(MappedBody, Artifacts)> {
         let finished: MappedFiles = self.checkpoints.recall(&format!("{}/body", self.name))?;
         let folder = self.out.join(self.name);
         for (name, hash) in &finished.files {
@@ -80,7 +84,7 @@ impl ArtifactFiles<'_> {
         let (labels, tree) = (folder.join("labels.csv"), folder.join("tree.csv"));
         let truth = tables::read_truth(&labels, &tree, settings.sensors()).ok()?;
         let resolution = finished.facts.resolution;
-        Some((Body { truth, maps, resolution }, self.kept(finished)))
+        Some((MappedBody { truth, maps, resolution }, self.kept(finished)))
     }
 
     fn kept(&self, MappedFiles { facts, files }: MappedFiles) -> Artifacts {

@@ -18,7 +18,7 @@ use super::task::{Keep, Task, TaskProgress};
 use crate::files::FileError;
 use crate::files::checkpoint::Checkpoints;
 use crate::pipeline::{
-    BaselineRecord, Body, Condition, Inference, Mapped, Record, StageError, cluster_and_score,
+    BaselineRecord, Condition, Inference, Mapped, MappedBody, Record, StageError, cluster_and_score,
     infer_and_score,
 };
 use crate::stages::schema::Sample;
@@ -34,7 +34,7 @@ pub(crate) struct TaskOutput {
     /// All clusterings, evaluated.
     pub baselines: Vec<BaselineRecord>,
     /// The body, where its files are kept.
-    pub body: Option<Body>,
+    pub body: Option<MappedBody>,
     /// What is known of that body.
     pub kept: Option<Artifacts>,
     /// How well the physics step resolved its movement.
@@ -211,7 +211,7 @@ impl Batch<'_> {
         &self,
         task: &Task,
         condition: Condition,
-        body: &mut Option<Body>,
+        body: &mut Option<MappedBody>,
         map: ComputeMaps,
         progress: &TaskProgress,
     ) -> Result<Inference, Stop> {
@@ -231,7 +231,7 @@ impl Batch<'_> {
     }
 
     /// The clusterings on one body map.
-    fn cluster(&self, task: &Task, body: &Body, dimension: usize) -> Result<Vec<BaselineRecord>, Stop> {
+    fn cluster(&self, task: &Task, body: &MappedBody, dimension: usize) -> Result<Vec<BaselineRecord>, Stop> {
         let name = format!("{}/baselines-{dimension}", task.name);
         if let Some(finished) = self.checkpoints.recall(&name) {
             return Ok(finished);

@@ -125,11 +125,11 @@ impl Cluster {
     }
 
     /// Learns the motion in more iterations, and with lower ranks, as long as the description gets shorter.
-    pub(super) fn learn_well(&mut self, felt: &Felt) {
-        self.learn_more(felt);
+    pub(super) fn learn_with_least_rank(&mut self, felt: &Felt) {
+        self.learn_longer(felt);
         while self.rank() > 1 {
             let mut less = Self::of_rank(felt, self.sensors.clone(), self.rank() - 1);
-            less.learn_more(felt);
+            less.learn_longer(felt);
             if less.description_length >= self.description_length {
                 break;
             }
@@ -143,14 +143,14 @@ impl Cluster {
     }
 
     /// The same in more iterations.
-    pub(super) fn converged(felt: &Felt, sensors: Vec<usize>) -> Self {
+    pub(super) fn learned_longer(felt: &Felt, sensors: Vec<usize>) -> Self {
         let mut cluster = Self::widest(felt, sensors);
-        cluster.learn_more(felt);
+        cluster.learn_longer(felt);
         cluster
     }
 
     /// Learns the motion in more iterations.
-    pub(super) fn learn_more(&mut self, felt: &Felt) {
+    pub(super) fn learn_longer(&mut self, felt: &Felt) {
         if !self.is_learned || self.variance() > felt.tolerance {
             self.learn(felt, felt.iterations[1], WEIGHTS[1]);
             self.is_learned = true;
@@ -193,7 +193,7 @@ impl Cluster {
     }
 
     /// Replaces what completes the roots of these sensors by what this motion gives.
-    pub(super) fn complete(&self, felt: &mut Felt) {
+    pub(super) fn complete_roots(&self, felt: &mut Felt) {
         for (at, &sensor) in self.representatives.iter().enumerate() {
             felt.completed.col_mut(sensor).copy_from(self.completed.col(at));
         }
@@ -277,7 +277,7 @@ impl Cluster {
             });
             last = next;
             als.update_motion(loadings.as_ref(), motion);
-            complete(completed, &own, loadings, motion);
+            fill_in(completed, &own, loadings, motion);
         }
         let [residual, freedom] = plain.residual(loadings.as_ref(), motion);
         let whitened = whitened(loadings, motion);
@@ -304,7 +304,7 @@ fn per_root([sum, count]: [f64; 2]) -> f64 {
 }
 
 /// Replaces what completes roots by the velocity that is predicted, which is no more than the root; any, where this is missing.
-fn complete(completed: &mut Mat<f64>, roots: &Roots, loadings: &Mat<f64>, motion: &Mat<f64>) {
+fn fill_in(completed: &mut Mat<f64>, roots: &Roots, loadings: &Mat<f64>, motion: &Mat<f64>) {
     let predicted = product(motion.as_ref(), loadings.transpose());
     for sensor in 0..completed.ncols() {
         let both = predicted.col_as_slice(sensor).iter().zip(roots.values.col_as_slice(sensor));

@@ -45,7 +45,7 @@ impl Search {
                 continue;
             };
             for (to, union) in unions {
-                union.complete(&mut self.felt);
+                union.complete_roots(&mut self.felt);
                 clusters[to] = Some(self.kept(union));
             }
         }
@@ -78,7 +78,7 @@ impl Search {
         let mut places: Vec<usize> = by_residual.into_iter().map(|(place, _)| place).collect();
         // What one motion leaves of the cluster, if it explains it.
         let left = OnceLock::new();
-        let left = || left.get_or_init(|| self.explaining(sensors.clone()).map(|own| own.variance()));
+        let left = || left.get_or_init(|| self.explained(sensors.clone()).map(|own| own.variance()));
         let is_tried = 2 * explained > sensors.len() || left().is_none();
         if is_tried && let Some(unions) = self.shorter(own, others, &places) {
             return Some(unions);
@@ -118,7 +118,7 @@ impl Search {
         }
         let union = |(place, sensors): (usize, Vec<usize>)| {
             let before: &Kept = others[place].1;
-            Some((place, self.explaining([&before.cluster.sensors[..], &sensors].concat())?))
+            Some((place, self.explained([&before.cluster.sensors[..], &sensors].concat())?))
         };
         let unions: Vec<Option<(usize, Cluster)>> = takes.into_par_iter().map(union).collect();
         let unions: Vec<(usize, Cluster)> = unions.into_iter().collect::<Option<_>>()?;

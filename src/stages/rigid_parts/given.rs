@@ -59,11 +59,11 @@ pub(crate) fn motions_of_parts(
         }
         let cluster = if let Some(rank) = rank {
             let mut cluster = Cluster::of_rank(&search.felt, places(own), rank);
-            cluster.learn_more(&search.felt);
+            cluster.learn_longer(&search.felt);
             cluster
         } else {
             let mut cluster = Cluster::new(&search.felt, places(own));
-            cluster.learn_well(&search.felt);
+            cluster.learn_with_least_rank(&search.felt);
             cluster
         };
         own.small.iter().fold(prepared.motion(&cluster, &sensors), |whole, small| whole.with(small))

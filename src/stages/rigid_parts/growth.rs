@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 use super::cluster::{Cluster, MAX_SENSORS, ROUNDING};
 use super::search::{EXPLAINED, Search};
-use super::separation::{LEVELS, MAX_ROUNDS, explaining};
+use super::separation::{LEVELS, MAX_ROUNDS, best_part};
 use super::stratified::stratified;
 
 /// How many times more a cluster may leave with more sensors than without. A sensor of another part adds more.
@@ -53,7 +53,7 @@ impl Search {
                 let new: Vec<usize> = own.sensors.iter().filter(is_new).copied().collect();
                 if !new.iter().any(|sensor| taken.contains(sensor)) {
                     taken.extend(new);
-                    own.complete(&mut self.felt);
+                    own.complete_roots(&mut self.felt);
                     settled[at] = own;
                 }
             }
@@ -70,7 +70,7 @@ impl Search {
         let residuals: Vec<Vec<f64>> = clusters.par_iter().map(|own| own.residuals(&self.felt)).collect();
         let mut wanted: Vec<Vec<(f64, usize)>> = vec![Vec::new(); clusters.len()];
         for sensor in self.in_none(clusters) {
-            if let Some(at) = explaining(&residuals, sensor, 0.0) {
+            if let Some(at) = best_part(&residuals, sensor, 0.0) {
                 wanted[at].push((residuals[at][sensor], sensor));
             }
         }
@@ -86,7 +86,7 @@ impl Search {
         let counts = std::iter::successors(Some(wanted.len()), |count| Some(count / 2));
         let with = |count: usize| {
             let both =
-                Cluster::converged(&self.felt, [cluster.sensors.as_slice(), &wanted[..count]].concat());
+                Cluster::learned_longer(&self.felt, [cluster.sensors.as_slice(), &wanted[..count]].concat());
             (Self::are_told(count, cluster, &both) && self.is_exact(&both)).then_some(both)
         };
         counts.take_while(|count| *count > 0).find_map(with)
@@ -103,7 +103,8 @@ impl Search {
         let core: Vec<usize> =
             stratified(cluster.sensors.len(), MAX_GROUP).map(|at| cluster.sensors[at]).collect();
         let most = f64::min(EXPLAINED * self.felt.tolerance, MORE * cluster.variance().max(ROUNDING));
-        let with = |core: &[usize], group: &[usize]| Cluster::converged(&self.felt, [core, group].concat());
+        let with =
+            |core: &[usize], group: &[usize]| Cluster::learned_longer(&self.felt, [core, group].concat());
         while group.len() >= MIN_GROUP {
             let both = with(&core, &group);
             let of = |sensor: usize| (both.residual_of(&self.felt, sensor), sensor);

@@ -13,7 +13,7 @@ use super::roots::{Roots, columns};
 pub(super) fn slow_share(felt: &Felt, sensors: &[usize]) -> f64 {
     let [slow, fast] = halves(felt, sensors).map(|half| {
         let all = (0..half.roots.sensors()).collect();
-        Cluster::converged(&half, all).variance()
+        Cluster::learned_longer(&half, all).variance()
     });
     slow / fast.max(f64::MIN_POSITIVE)
 }

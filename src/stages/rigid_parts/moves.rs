@@ -130,7 +130,7 @@ impl Search {
         core: impl Fn(usize) -> f64 + Sync,
     ) -> Option<(f64, usize)> {
         let cost = |at: usize| {
-            let both = self.explaining([tried_of(sensors(at)).as_slice(), tried].concat())?;
+            let both = self.explained([tried_of(sensors(at)).as_slice(), tried].concat())?;
             Some((both.description_length - core(at), at))
         };
         let costs: Vec<Option<(f64, usize)>> = clusters.into_par_iter().map(cost).collect();
@@ -143,23 +143,23 @@ impl Search {
     }
 
     /// A cluster of sensors, whose motion is learned in more iterations, if that explains it.
-    pub(super) fn explaining(&self, sensors: Vec<usize>) -> Option<Cluster> {
+    pub(super) fn explained(&self, sensors: Vec<usize>) -> Option<Cluster> {
         let mut found = self.may_be_one(Cluster::new(&self.felt, sensors))?;
-        found.learn_more(&self.felt);
+        found.learn_longer(&self.felt);
         self.explains(&found).then_some(found)
     }
 
     /// A cluster of sensors, whose motion is learned in more iterations.
     pub(super) fn learned(&self, sensors: Vec<usize>) -> Cluster {
         let mut found = Cluster::new(&self.felt, sensors);
-        found.learn_more(&self.felt);
+        found.learn_longer(&self.felt);
         found
     }
 
     /// A cluster of sensors, which completes what they feel.
     fn completing(&mut self, sensors: Vec<usize>) -> Cluster {
         let found = Cluster::new(&self.felt, sensors);
-        found.complete(&mut self.felt);
+        found.complete_roots(&mut self.felt);
         found
     }
 }

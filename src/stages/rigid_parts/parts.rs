@@ -14,7 +14,7 @@ use super::factorisation::MAX_RANK;
 use super::medians::typical_size;
 use super::prepared::Prepared;
 use super::search::MIN_SENSORS;
-use super::separation::explaining;
+use super::separation::best_part;
 use super::subspace::{MotionSubspace, ROTATION_RANK};
 use crate::numerics::partition::named_by_appearance;
 use crate::stages::sense::Tactile;
@@ -75,7 +75,7 @@ pub fn rigid_parts(tactile: &Tactile, signed: bool, sensors: &[usize]) -> RigidP
     let residuals: Vec<Vec<f64>> = parts.par_iter().map(|part| part.shares(every)).collect();
     for (sensor, label) in labels.iter_mut().enumerate() {
         let most = if are_enough && !tells[sensor] { f64::INFINITY } else { search.most_residual() };
-        *label = label.or_else(|| explaining(&residuals, sensor, most));
+        *label = label.or_else(|| best_part(&residuals, sensor, most));
     }
     let rest: Vec<usize> = (0..count).filter(|&sensor| labels[sensor].is_none()).collect();
     let groups = similar(every, &rest);

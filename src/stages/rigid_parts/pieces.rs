@@ -32,7 +32,7 @@ pub(super) fn pieces(felt: &Felt, sensors: &[usize]) -> (Vec<Cluster>, Vec<usize
         found.extend(more);
         rest = left;
     }
-    (found.into_iter().map(|own| Cluster::converged(felt, own)).collect(), rest)
+    (found.into_iter().map(|own| Cluster::learned_longer(felt, own)).collect(), rest)
 }
 
 /// The same without looking again among those that are left. The completion of a few sensors shows what that of all hides.
@@ -41,7 +41,7 @@ fn pieces_once(outer: &Felt, sensors: &[usize]) -> (Vec<Vec<usize>>, Vec<usize>)
     let completion = Completion::new(&roots);
     let felt = Felt { roots, completed: completion.velocities, sizes: outer.sizes.clone(), ..*outer };
     let limit = EXPLAINED * felt.tolerance;
-    let whole = Cluster::converged(&felt, (0..sensors.len()).collect());
+    let whole = Cluster::learned_longer(&felt, (0..sensors.len()).collect());
     if whole.variance() <= limit {
         return (vec![sensors.to_vec()], Vec::new());
     }
@@ -109,7 +109,7 @@ fn k_subspaces(felt: &Felt, affinities: &Mat<f64>, k: usize) -> Vec<Cluster> {
         members = now;
     }
     members.retain(|own| own.len() >= MIN_CLUSTER);
-    members.into_iter().map(|own| Cluster::converged(felt, own)).collect()
+    members.into_iter().map(|own| Cluster::learned_longer(felt, own)).collect()
 }
 
 /// For each cluster, the sensors that it leaves the smallest residual of all, no more than `most`.

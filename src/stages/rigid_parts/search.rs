@@ -66,7 +66,7 @@ impl Search {
         let mut before = Vec::new();
         for _ in 0..MAX_ALTERNATIONS {
             clusters = self.merged(clusters);
-            clusters.par_iter_mut().for_each(|own| own.learn_well(&self.felt));
+            clusters.par_iter_mut().for_each(|own| own.learn_with_least_rank(&self.felt));
             clusters = self.assigned(clusters, &every);
             let count = clusters.len();
             clusters = self.split(clusters);
@@ -82,7 +82,7 @@ impl Search {
             before = now;
         }
         self.separated(&clusters).unwrap_or_else(|| {
-            clusters.par_iter_mut().for_each(|own| own.learn_well(&self.felt));
+            clusters.par_iter_mut().for_each(|own| own.learn_with_least_rank(&self.felt));
             clusters
         })
     }
@@ -158,7 +158,7 @@ impl Search {
             if best.is_none() && self.felt.tolerance >= LEAST_TOLERANCE {
                 // More iterations may show what the first ones leave open. Below, there were many.
                 let open = unions.par_iter_mut().filter(|(pair, _)| pairs.contains(pair));
-                open.filter_map(|(_, union)| union.as_mut()).for_each(|union| union.learn_more(&self.felt));
+                open.filter_map(|(_, union)| union.as_mut()).for_each(|union| union.learn_longer(&self.felt));
                 best = best_merge(&clusters, &unions, &pairs);
             }
             let Some((a, b)) = best else { break };
@@ -167,7 +167,7 @@ impl Search {
                 unions.insert((a, b), None);
                 continue;
             }
-            union.complete(&mut self.felt);
+            union.complete_roots(&mut self.felt);
             unions.retain(|(c, d), _| ![a, b].iter().any(|gone| c == gone || d == gone));
             clusters.remove(&a);
             clusters.remove(&b);
@@ -184,7 +184,7 @@ impl Search {
             return false;
         }
         if !self.explains(union) {
-            union.learn_more(&self.felt);
+            union.learn_longer(&self.felt);
         }
         self.explains(union)
     }
@@ -281,7 +281,7 @@ impl Search {
                 .map(|(cluster, own)| if cluster.sensors == own { cluster } else { Cluster::new(felt, own) })
                 .collect();
             for cluster in &clusters {
-                cluster.complete(&mut self.felt);
+                cluster.complete_roots(&mut self.felt);
             }
         }
         clusters

@@ -41,9 +41,8 @@ impl Search {
         let (mut last, mut found) = (before, None::<Vec<Cluster>>);
         for (at, level) in LEVELS.into_iter().enumerate() {
             (self.felt.tolerance, self.felt.iterations) = level;
-            let converged = |own: &Cluster| Cluster::converged(&self.felt, own.sensors.clone());
-            let start: Vec<Cluster> =
-                found.as_deref().unwrap_or(clusters).par_iter().map(converged).collect();
+            let learned = |own: &Cluster| Cluster::learned_longer(&self.felt, own.sensors.clone());
+            let start: Vec<Cluster> = found.as_deref().unwrap_or(clusters).par_iter().map(learned).collect();
             if at == 0 {
                 self.has_exact_model = self.are_clear(&start);
             } else if !quarter_leaves_nothing(&start) {
@@ -60,7 +59,10 @@ impl Search {
         }
         (self.felt.tolerance, self.felt.iterations) = last;
         let mut found = found?;
-        found.par_iter_mut().filter(|own| self.is_exact(own)).for_each(|own| own.learn_well(&self.felt));
+        found
+            .par_iter_mut()
+            .filter(|own| self.is_exact(own))
+            .for_each(|own| own.learn_with_least_rank(&self.felt));
         if !self.has_exact_model {
             // What a part may leave, and which rank it has, is then as before.
             let (exact, mut other): (Vec<Cluster>, Vec<Cluster>) =
@@ -68,7 +70,7 @@ impl Search {
             (self.felt.tolerance, self.felt.iterations) = before;
             other.par_iter_mut().for_each(|own| {
                 *own = Cluster::new(&self.felt, std::mem::take(&mut own.sensors));
-                own.learn_well(&self.felt);
+                own.learn_with_least_rank(&self.felt);
             });
             found = [exact, other].concat();
         }
@@ -134,11 +136,11 @@ impl Search {
     }
 
     fn complete(&mut self, clusters: &[Cluster]) {
-        clusters.iter().for_each(|own| own.complete(&mut self.felt));
+        clusters.iter().for_each(|own| own.complete_roots(&mut self.felt));
     }
 
     fn converge(&self, clusters: &mut [Cluster]) {
-        clusters.par_iter_mut().for_each(|own| own.learn_more(&self.felt));
+        clusters.par_iter_mut().for_each(|own| own.learn_longer(&self.felt));
     }
 
     /// The pieces of each cluster that is not settled, and what is left of it as another one.
@@ -159,7 +161,7 @@ impl Search {
 
     /// What is left of a cluster, if that is one.
     fn remaining(&self, sensors: Vec<usize>) -> Option<Cluster> {
-        (sensors.len() >= MIN_CLUSTER).then(|| Cluster::converged(&self.felt, sensors))
+        (sensors.len() >= MIN_CLUSTER).then(|| Cluster::learned_longer(&self.felt, sensors))
     }
 
     /// With the pieces of all sensors that are in no settled cluster: those that were scattered over several.
@@ -211,7 +213,7 @@ fn quarter_leaves_nothing(clusters: &[Cluster]) -> bool {
 }
 
 /// The part whose motion explains a sensor best, if it leaves no more than this, or much less than that of any other does.
-pub(super) fn explaining(residuals: &[Vec<f64>], sensor: usize, most: f64) -> Option<usize> {
+pub(super) fn best_part(residuals: &[Vec<f64>], sensor: usize, most: f64) -> Option<usize> {
     let mut order: Vec<(f64, usize)> =
         residuals.iter().enumerate().map(|(at, own)| (own[sensor], at)).collect();
     order.sort_by(|a, b| a.0.total_cmp(&b.0));

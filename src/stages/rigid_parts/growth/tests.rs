@@ -44,7 +44,7 @@ fn felt() -> Search {
 #[test]
 fn a_cylinder_grows_by_its_ends_and_not_by_another_part() {
     let mut search = felt();
-    let side = Cluster::converged(&search.felt, (0..24).collect());
+    let side = Cluster::learned_longer(&search.felt, (0..24).collect());
     assert!(search.is_exact(&side), "{}", side.variance());
     let found = search.grown(vec![side]);
     assert_eq!(found.len(), 1);
@@ -56,7 +56,7 @@ fn a_cylinder_grows_by_its_ends_and_not_by_another_part() {
 fn a_cluster_grows_by_no_sensors_of_another_part() {
     let mut search = felt();
     // With both ends it has all of its motion, and one component to spare.
-    let all = Cluster::converged(&search.felt, (0..32).collect());
+    let all = Cluster::learned_longer(&search.felt, (0..32).collect());
     let found = search.grown(vec![all]);
     assert_eq!(found[0].sensors, (0..32).collect::<Vec<_>>());
 }

@@ -32,7 +32,7 @@ fn found(felt: &Felt) -> (Vec<Vec<usize>>, Vec<usize>) {
 #[test]
 fn parts_that_hardly_move_against_each_other_are_told_apart() {
     let felt = felt(0.1, 0.0);
-    let whole = Cluster::converged(&felt, (0..48).collect());
+    let whole = Cluster::learned_longer(&felt, (0..48).collect());
     assert!(
         (1e-4..1e-2).contains(&whole.variance()),
         "one motion nearly explains both: {}",

@@ -79,8 +79,8 @@ fn an_error_of_second_order_settles_a_part_and_not_two() {
     let mut search = search(6, 0.01, 0.0);
     assert_eq!(separated(&mut search, &[part(0), part(2), part(3)]), None);
     (search.felt.tolerance, search.felt.iterations) = LEVELS[0];
-    let converged = |own: Vec<usize>| Cluster::converged(&search.felt, own);
-    for own in [part(0), part(1)].map(converged) {
+    let learned = |own: Vec<usize>| Cluster::learned_longer(&search.felt, own);
+    for own in [part(0), part(1)].map(learned) {
         assert!(
             !search.is_exact(&own) && search.is_settled(&own),
             "{} {}",
@@ -88,7 +88,7 @@ fn an_error_of_second_order_settles_a_part_and_not_two() {
             calm_share(&search.felt, &own)
         );
     }
-    assert!(!search.is_settled(&converged([part(0), part(1)].concat())));
+    assert!(!search.is_settled(&learned([part(0), part(1)].concat())));
 }
 
 #[test]

@@ -23,19 +23,19 @@ fn felt(error: f64) -> Felt {
     felt_of(&values).0
 }
 
-fn converged(felt: &Felt) -> Cluster {
-    Cluster::converged(felt, (0..30).collect())
+fn learned_longer(felt: &Felt) -> Cluster {
+    Cluster::learned_longer(felt, (0..30).collect())
 }
 
 #[test]
 fn samples_with_an_error_weigh_less() {
     let mut felt = felt(0.3);
-    let before = converged(&felt);
+    let before = learned_longer(&felt);
     weigh(&mut felt, std::slice::from_ref(&before));
     let typical =
         |wrong: bool| median((0..600).filter(|t| (t % 10 == 0) == wrong).map(|t| felt.sizes[t]).collect());
     assert!(typical(true) > 3.0 && typical(false) < 1.3, "{} and {}", typical(true), typical(false));
-    let after = converged(&felt);
+    let after = learned_longer(&felt);
     assert!(before.variance() > 3.0 * LEAST_TOLERANCE, "{}", before.variance());
     assert!(after.variance() < 0.5 * LEAST_TOLERANCE, "{}", after.variance());
     let root = felt.roots.values[(10, 0)] * felt.sizes[10];
@@ -44,7 +44,7 @@ fn samples_with_an_error_weigh_less() {
 
 #[test]
 fn an_error_of_few_samples_is_spread_unevenly_and_that_of_all_is_not() {
-    let share = |felt: &Felt| calm_share(felt, &converged(felt));
+    let share = |felt: &Felt| calm_share(felt, &learned_longer(felt));
     let few = share(&felt(0.3));
     // As large at every sample.
     let mut rng = stream(8, 1, "weights", 0);
@@ -57,7 +57,7 @@ fn an_error_of_few_samples_is_spread_unevenly_and_that_of_all_is_not() {
 #[test]
 fn exact_samples_stay_as_they_are() {
     let mut felt = felt(0.0);
-    let exact = converged(&felt);
+    let exact = learned_longer(&felt);
     weigh(&mut felt, &[exact]);
     assert!(felt.sizes.iter().all(|size| *size < 1.01), "{:?}", felt.sizes);
 }
