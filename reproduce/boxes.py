@@ -13,7 +13,7 @@ import random
 import sys
 import tempfile
 
-from estimated import ROOT, TRUTH, estimated, interval, resumed, revision, run
+from estimated import ROOT, TRUTH, estimated, interval, outcome, resumed, revision, run
 
 SENSORS, DURATION = 40, 2000  # of each part; s
 SETTINGS = "physics.step = 0.02\nmotion.epoch = 250\nmotion.coordination = 0.5\n"
@@ -29,6 +29,8 @@ def main():
     parser.add_argument("--bodies", type=int, default=20, help="how many bodies")
     parser.add_argument("--out", type=pathlib.Path, default=ROOT / "docs" / "shown" / "boxes", help="folder to write to")
     arguments = parser.parse_args()
+    if arguments.bodies < 1:
+        parser.error("--bodies must be at least 1")
     arguments.out.mkdir(parents=True, exist_ok=True)
     current = revision()
     jobs = [{"body": arguments.first + at, "revision": current} for at in range(arguments.bodies)]
@@ -92,7 +94,7 @@ def solid(shape, centre, size):
 
 
 def page(rows):
-    right = lambda column: sum(row[column] == "true" for row in rows)
+    trees = sum(row["tree_right"] == "true" for row in rows)
     parts = sum(row["parts"] == row["true_parts"] for row in rows)
     mean = sum(float(row["ari"]) for row in rows) / len(rows)
     first, last = rows[0]["body"], rows[-1]["body"]
@@ -104,16 +106,14 @@ def page(rows):
         f"easier. Each part has {SENSORS} virtual sensors, without noise, and p is 0.5. A movement has {10 * DURATION:,} samples of 0.1 s. Made by",
         f"`reproduce/boxes.py` with revision {rows[0]['revision'][:7]} and seeds {first} to {last}, each of a body and its movement.",
         "",
-        f"The tree was right in {interval(right('tree_right'), len(rows))}, and the number of parts in {interval(parts, len(rows))}",
+        f"The tree was right in {interval(trees, len(rows))}, and the number of parts in {interval(parts, len(rows))}",
         f"(95 % intervals, Wilson). The adjusted Rand index was {mean:.3f} on average.",
         "",
         "| body | fit | true parts | found | adjusted Rand index | joints right | tree |",
         "|---|---|---|---|---|---|---|",
     ]
     for row in sorted(rows, key=lambda row: float(row["ari"])):
-        tree = "right" if row["tree_right"] == "true" else "wrong"
-        joints = f"{row['joints_right']} of {row['true_joints']}"
-        lines.append(f"| {' | '.join([row['body'], row['fit'], row['true_parts'], row['parts'], row['ari'], joints, tree])} |")
+        lines.append(f"| {' | '.join([row['body'], row['fit'], *outcome(row)])} |")
     return "\n".join(lines) + "\n"
 
 

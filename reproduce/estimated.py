@@ -1,4 +1,4 @@
-"""What scripts share: gaps.py, recordings.py, repeats.py and robots.py, which count how often parts and tree are right, and others that read tables."""
+"""What scripts share: boxes.py, gaps.py, recordings.py, repeats.py and robots.py, which count how often parts and tree are right, and others that read tables."""
 
 import csv
 import hashlib
@@ -105,6 +105,12 @@ def interval(count, of):
     """A count with the 95 % interval of its share."""
     low, high = wilson(count, of)
     return f"{count} of {of} ({100 * low:.0f} to {100 * high:.0f} %)"
+
+
+def outcome(row):
+    """Cells of a table: true parts, parts found, adjusted Rand index, joints right, and the tree."""
+    tree = "right" if row["tree_right"] == "true" else "wrong"
+    return [row["true_parts"], row["parts"], row["ari"], f"{row['joints_right']} of {row['true_joints']}", tree]
 
 
 def run(*words):

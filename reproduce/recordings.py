@@ -18,7 +18,7 @@ try:
 except ModuleNotFoundError:
     sys.exit("recordings: needs Python 3.11 or newer")
 
-from estimated import ROOT, TRUTH, downloaded, estimated, read, revision, run, write
+from estimated import ROOT, TRUTH, downloaded, estimated, outcome, read, revision, run, write
 
 COLUMNS = ["recording", "use", "samples", "sensors", "fit", *TRUTH, "revision"]
 
@@ -73,10 +73,8 @@ def page(rows, design):
         "|---|---|---|---|---|---|---|---|---|",
     ]
     for row in sorted(rows, key=lambda row: float(row["ari"])):
-        tree = "right" if row["tree_right"] == "true" else "wrong"
         size = f"{int(row['samples']):,} × {int(row['sensors']):,}"
-        joints = f"{row['joints_right']} of {row['true_joints']}"
-        cells = [row["recording"], row["use"], size, row["fit"], row["true_parts"], row["parts"], row["ari"], joints, tree]
+        cells = [row["recording"], row["use"], size, row["fit"], *outcome(row)]
         lines.append("| " + " | ".join(str(cell) for cell in cells) + " |")
     for what, own in [("all", rows), ("held out", [row for row in rows if row["use"] == "held out"])]:
         if not own:
