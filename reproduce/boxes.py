@@ -25,7 +25,7 @@ GAP = 0.01  # m, from a surface to the anchor of a joint
 
 def main():
     parser = argparse.ArgumentParser(description="Estimate the parts of random robots of boxes.")
-    parser.add_argument("--first", type=int, default=4940001, help="the first body; 101 to 112 are calibration")
+    parser.add_argument("--first", type=int, default=4940001, help="the first body; 101 to 130 are calibration")
     parser.add_argument("--bodies", type=int, default=20, help="how many bodies")
     parser.add_argument("--out", type=pathlib.Path, default=ROOT / "docs" / "shown" / "boxes", help="folder to write to")
     arguments = parser.parse_args()

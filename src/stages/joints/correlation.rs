@@ -71,21 +71,30 @@ impl QuadraticForms {
     }
 }
 
-/// The largest cosine over samples between a quadratic form of one part's motion and one of another's, both positive
-/// semidefinite, as the square of a speed is; 0 to 1, and 0 where a part feels nothing.
+/// What the quadratic forms of two motions have in common.
+#[derive(Default)]
+pub(super) struct Common {
+    /// The largest cosine over samples between a form of one motion and one of the other, both positive semidefinite, as the square of a
+    /// speed is; 0 to 1. A lower bound.
+    pub correlation: f64,
+    /// The canonical correlations of any forms, without a constant; 0 to 1, the largest first.
+    pub canonical: Vec<f64>,
+}
+
+/// What the quadratic forms of two motions have in common; nothing where a part feels nothing.
 ///
 /// `products` are sums over samples of the products of the monomials of both. The start is the first canonical correlation,
 /// without a constant, for a form is 0 at rest. Then each form is made semidefinite and regressed on the other, and the best
-/// iteration counts: a lower bound of the largest cosine.
-pub(super) fn correlation(
+/// iteration counts.
+pub(super) fn common(
     first: &Option<QuadraticForms>,
     second: &Option<QuadraticForms>,
     products: &DMatrix<f64>,
-) -> f64 {
-    let (Some(first), Some(second)) = (first, second) else { return 0.0 };
+) -> Common {
+    let (Some(first), Some(second)) = (first, second) else { return Common::default() };
     let whole = whitened(&first.factor, &second.factor, products);
     let svd = whole.svd(true, true);
-    let (Some(u), Some(v)) = (&svd.u, &svd.v_t) else { return 0.0 };
+    let (Some(u), Some(v)) = (&svd.u, &svd.v_t) else { return Common::default() };
     let at = svd.singular_values.imax();
     let mut b =
         second.factor.tr_solve_lower_triangular(&u.column(at).into_owned()).expect("a factor is regular");
@@ -104,7 +113,8 @@ pub(super) fn correlation(
         best = f64::max(best, own.dot(&with_other) / norms);
         (a, b) = (first.regressed(&with_other), second.regressed(&products.tr_mul(&own)));
     }
-    best.clamp(0.0, 1.0)
+    let canonical = svd.singular_values.iter().map(|value| value.clamp(0.0, 1.0)).collect();
+    Common { correlation: best.clamp(0.0, 1.0), canonical }
 }
 
 /// Adds a share of the mean of the diagonal to it. Out: the lower Cholesky factor; `None` if that is singular, or there is nothing.

@@ -5,7 +5,7 @@ use std::ops::Range;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 
-use super::correlation::{QuadraticForms, correlation};
+use super::correlation::{QuadraticForms, common};
 use super::moments::{monomials, scales};
 use crate::stages::rigid_parts::{MotionSubspace, stratified};
 
@@ -87,7 +87,7 @@ impl CrossMoments {
 
     /// The correlation of two parts.
     pub(super) fn correlation(&self, first: &Extended, second: &Extended) -> f64 {
-        correlation(&first.forms, &second.forms, &self.select(&first.places, &second.places))
+        common(&first.forms, &second.forms, &self.select(&first.places, &second.places)).correlation
     }
 
     /// The places of the monomials of a part with these clusters, and which two components of their motion each is the product

@@ -5,15 +5,19 @@
 //! Over all trees, that of most information is the most likely one (Chow and Liu 1968). That holds if joints move independently of
 //! each other. Where they are coordinated, as in a walk, opposite limbs share more than neighbours do; only speeds tell the truth
 //! then. So the linear share counts little: it decides where samples are few, and quadratic forms of any two parts may agree.
+//!
+//! A hinge shares more than the speed of one point: that of every point on its axis, and the velocity along it. Parts whose hinges are
+//! parallel have nearly the same velocity along them, however far apart they are in the tree. The speed of that alone can agree as well as
+//! that of a joint. So all that the quadratic forms of two motions share is counted, too, with the same small weight.
 
 use nalgebra::DMatrix;
 
-use super::correlation::{factor_with_ridge, whitened};
+use super::correlation::{Common, factor_with_ridge, whitened};
 
 /// Unexplained share of a joint's squared speed below which a joint tells hardly any more.
 const NEGLIGIBLE: f64 = 1e-3;
-/// Weight of the linear share.
-const LINEAR: f64 = 0.1;
+/// Weight of all that two motions share, beside the speed of their joint.
+const SHARED: f64 = 0.1;
 /// What is added to the variances of components, as a share of their mean: those of hardly any variance are noise.
 const RIDGE: f64 = 1e-3;
 
@@ -22,9 +26,10 @@ pub(super) fn of_speeds(correlation: f64) -> f64 {
     -0.5 * ((1.0 - correlation * correlation + NEGLIGIBLE) / (1.0 + NEGLIGIBLE)).ln()
 }
 
-/// Of a joint, from the correlation of its squared speeds and the mutual information of the motions of its parts, nats.
-pub(super) fn of_joint(correlation: f64, mutual: f64) -> f64 {
-    of_speeds(correlation) + LINEAR * mutual
+/// Of a joint, from what the quadratic forms of the motions of its parts have in common, and their linear mutual information, nats.
+pub(super) fn of_joint(common: &Common, linear: f64) -> f64 {
+    let quadratic: f64 = common.canonical.iter().copied().map(of_speeds).sum();
+    of_speeds(common.correlation) + SHARED * (linear + quadratic)
 }
 
 /// The motion of a part as a Gaussian variable about 0.

@@ -4,7 +4,7 @@
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 
-use super::correlation::{QuadraticForms, correlation};
+use super::correlation::{QuadraticForms, common};
 use super::information::{Gaussian, mutual_information, of_joint};
 use crate::numerics::interrupt;
 use crate::stages::rigid_parts::MotionSubspace;
@@ -23,7 +23,7 @@ pub(super) struct Moments {
 
 /// How much each part has to do with each other one: parts × parts, symmetric.
 pub(super) struct Dependence {
-    /// [`correlation`] of the squared speeds of a joint, 0 to 1; 1 on the diagonal.
+    /// [`Common::correlation`](super::correlation::Common) of the squared speeds of a joint, 0 to 1; 1 on the diagonal.
     pub correlations: DMatrix<f64>,
     /// [`information`](super::information) of a joint, nats; 0 on the diagonal.
     pub information: DMatrix<f64>,
@@ -80,11 +80,11 @@ impl Moments {
         let (mut correlations, mut information) =
             (DMatrix::identity(parts, parts), DMatrix::zeros(parts, parts));
         for (a, b) in (0..parts).flat_map(|a| (a + 1..parts).map(move |b| (a, b))) {
-            let found = correlation(&own[a].0, &own[b].0, &self.monomials.of(&quadratic, a, b));
+            let found = common(&own[a].0, &own[b].0, &self.monomials.of(&quadratic, a, b));
             let shared = mutual_information(&own[a].1, &own[b].1, &self.components.of(&linear, a, b));
             for at in [(a, b), (b, a)] {
-                correlations[at] = found;
-                information[at] = of_joint(found, shared);
+                correlations[at] = found.correlation;
+                information[at] = of_joint(&found, shared);
             }
         }
         Dependence { correlations, information }

@@ -30,6 +30,7 @@ mod parts;
 mod pieces;
 mod prepared;
 mod regressions;
+mod regrouping;
 mod roots;
 mod search;
 mod separation;

@@ -39,6 +39,8 @@ pub(super) const MIN_CLUSTER: usize = 4;
 /// Most iterations in which sensors are assigned, and of merging and assigning.
 const MAX_ASSIGNMENTS: usize = 3;
 const MAX_ALTERNATIONS: usize = 4;
+/// Most times that faces are regrouped.
+const MAX_REGROUPINGS: usize = 3;
 
 /// Sensors whose clusters are searched for.
 pub(super) struct Search {
@@ -62,16 +64,29 @@ impl Search {
     /// The clusters, each of one motion. Sensors that no motion explains are in none.
     pub(super) fn clusters(&mut self) -> Vec<Cluster> {
         let every: Vec<usize> = (0..self.felt.roots.sensors()).collect();
-        let mut clusters = self.seed_clusters(&every);
+        let seeds = self.seed_clusters(&every);
+        let mut clusters = self.alternated(seeds, &every);
+        for _ in 0..MAX_REGROUPINGS {
+            let Some(parts) = self.regrouped(&clusters) else { break };
+            clusters = self.alternated(parts, &every);
+        }
+        self.separated(&clusters).unwrap_or_else(|| {
+            clusters.par_iter_mut().for_each(|own| own.learn_with_least_rank(&self.felt));
+            clusters
+        })
+    }
+
+    /// Merges clusters, and assigns sensors and groups of sensors to others, in turn, as long as anything changes.
+    fn alternated(&mut self, mut clusters: Vec<Cluster>, every: &[usize]) -> Vec<Cluster> {
         let mut before = Vec::new();
         for _ in 0..MAX_ALTERNATIONS {
             clusters = self.merged(clusters);
             clusters.par_iter_mut().for_each(|own| own.learn_with_least_rank(&self.felt));
-            clusters = self.assigned(clusters, &every);
+            clusters = self.assigned(clusters, every);
             let count = clusters.len();
             clusters = self.split(clusters);
             if clusters.len() > count {
-                clusters = self.assigned(clusters, &every);
+                clusters = self.assigned(clusters, every);
             }
             clusters = self.moved(clusters);
             clusters = self.dispersed(clusters);
@@ -81,10 +96,7 @@ impl Search {
             }
             before = now;
         }
-        self.separated(&clusters).unwrap_or_else(|| {
-            clusters.par_iter_mut().for_each(|own| own.learn_with_least_rank(&self.felt));
-            clusters
-        })
+        clusters
     }
 
     /// The residual variance that is still explained, of a sensor that is in no cluster.

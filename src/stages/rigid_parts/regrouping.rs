@@ -1,0 +1,212 @@
+//! Regroup flat faces into parts, where merging pairs of clusters went wrong.
+//!
+//! All sensors of a flat face feel three numbers: the velocity along its normal, and how the part rotates about two axes in the face.
+//! Opposite faces feel the same three. Two faces at an edge share one of them. So do two faces of different boxes whose normals lie along
+//! the hinge between them: they have the same velocity along it. Merging pairs cannot tell which is right, and no single move corrects it
+//! later. Three faces can tell: those at a corner have six numbers, and those of different parts have more. So clusters are taken apart
+//! into flat faces (random sample consensus: Fischler and Bolles 1981, here with all triples of a few sensors). A part then grows from
+//! each face, as long as one motion explains it. The part that saves most is kept, and its faces are taken; and so on. The result counts
+//! if the description of all is shorter.
+
+use rayon::prelude::*;
+
+use super::cluster::Cluster;
+use super::search::{EXPLAINED, MIN_SAVING, Search, smallest};
+use super::stratified::stratified;
+
+/// What all sensors of a flat face feel: this many numbers.
+const FACE_RANK: usize = 3;
+/// Fewest sensors of a flat face. Any three span a subspace; only more than three tell a face.
+const MIN_FACE: usize = 5;
+/// Fewest sensors that are a group of their own if they are on no flat face.
+const MIN_REST: usize = 2;
+/// Sensors of a cluster whose triples are tried as what spans a face.
+const MAX_TRIED: usize = 20;
+
+/// A part that has grown from a face.
+struct Grown {
+    part: Cluster,
+    faces: Vec<usize>,
+    /// Nats per sample that it saves against its faces one by one.
+    saving: f64,
+}
+
+impl Search {
+    /// The parts that grow from the faces of these clusters, if no fewer sensors are on them, and their description is shorter: by what a
+    /// merge must save, for each cluster.
+    pub(super) fn regrouped(&mut self, clusters: &[Cluster]) -> Option<Vec<Cluster>> {
+        let faces: Vec<Vec<usize>> = clusters.par_iter().flat_map_iter(|own| self.flat_faces(own)).collect();
+        if faces.len() <= clusters.len() {
+            return None;
+        }
+        let before = self.felt.completed.clone();
+        let length = self.length_of(clusters);
+        let parts = self.parts_of(&faces);
+        parts.iter().for_each(|part| part.complete_roots(&mut self.felt));
+        let every: Vec<usize> = (0..self.felt.roots.sensors()).collect();
+        let parts = self.assigned(parts, &every);
+        let covered = |of: &[Cluster]| of.iter().map(|own| own.sensors.len()).sum::<usize>();
+        let least = MIN_SAVING * clusters.len() as f64;
+        if covered(&parts) >= covered(clusters) && length - self.length_of(&parts) > least {
+            return Some(parts);
+        }
+        self.felt.completed = before;
+        None
+    }
+
+    /// Description length of some clusters together.
+    fn length_of(&self, clusters: &[Cluster]) -> f64 {
+        let lengths: Vec<f64> =
+            clusters.par_iter().map(|own| self.learned(own.sensors.clone()).description_length).collect();
+        lengths.iter().sum()
+    }
+
+    /// The flat faces that the sensors of a cluster are on, and those on none as one more group.
+    fn flat_faces(&self, cluster: &Cluster) -> Vec<Vec<usize>> {
+        let most = EXPLAINED * self.felt.tolerance;
+        let flats = flats(&rows(cluster), most);
+        let flats: Vec<Cluster> = flats
+            .into_iter()
+            .map(|flat| flat.into_iter().map(|at| cluster.representatives[at]).collect())
+            .map(|sensors| Cluster::of_rank(&self.felt, sensors, FACE_RANK))
+            .collect();
+        let residuals: Vec<Vec<f64>> = flats.iter().map(|flat| flat.residuals(&self.felt)).collect();
+        let mut faces = vec![Vec::new(); flats.len() + 1];
+        for &sensor in &cluster.sensors {
+            let best = smallest(residuals.iter().map(|of| of[sensor])).filter(|(_, least)| *least <= most);
+            faces[best.map_or(flats.len(), |(at, _)| at)].push(sensor);
+        }
+        faces.retain(|face| face.len() >= MIN_REST);
+        faces
+    }
+
+    /// Parts that grow from faces: the one that saves most, then the one that saves most of the other faces, and so on.
+    fn parts_of(&self, faces: &[Vec<usize>]) -> Vec<Cluster> {
+        let faces: Vec<Cluster> =
+            faces.par_iter().map(|face| Cluster::new(&self.felt, face.clone())).collect();
+        let mut left: Vec<usize> = (0..faces.len()).collect();
+        let mut grown: Vec<Grown> = self.grown_from(&faces, &left, &left);
+        let mut parts = Vec::new();
+        while !left.is_empty() {
+            let best = smallest(grown.iter().map(|own| -own.saving))
+                .expect("one grows from each face that is left")
+                .0;
+            let Grown { part, faces: taken, .. } = grown.swap_remove(best);
+            parts.push(part);
+            left.retain(|face| !taken.contains(face));
+            // Parts that had none of these faces stay as they are.
+            grown.retain(|own| !own.faces.iter().any(|face| taken.contains(face)));
+            let anew: Vec<usize> =
+                left.iter().copied().filter(|from| !grown.iter().any(|own| own.faces[0] == *from)).collect();
+            grown.extend(self.grown_from(&faces, &left, &anew));
+            grown.sort_by_key(|own| own.faces[0]);
+        }
+        parts
+    }
+
+    /// The part that grows from each of some faces, of those that are left.
+    fn grown_from(&self, faces: &[Cluster], left: &[usize], from: &[usize]) -> Vec<Grown> {
+        from.par_iter().map(|&from| self.grown_part(faces, left, from)).collect()
+    }
+
+    /// Adds the face that saves most, of those of highest affinity, as long as one motion explains all.
+    fn grown_part(&self, faces: &[Cluster], left: &[usize], from: usize) -> Grown {
+        let mut grown = Grown { part: faces[from].clone(), faces: vec![from], saving: 0.0 };
+        loop {
+            let others = left.iter().copied().filter(|face| !grown.faces.contains(face)).collect();
+            let near = self.nearest(&grown.part.sensors, others, |at| &faces[at].sensors);
+            let with = |face: usize| {
+                let union = self.one_of(&grown.part, &faces[face])?;
+                let before = grown.part.description_length + faces[face].description_length;
+                Some((before - union.description_length, face, union))
+            };
+            let unions: Vec<_> = near.into_par_iter().map(with).collect();
+            let best = unions
+                .into_iter()
+                .flatten()
+                .reduce(|best, other| if other.0 > best.0 { other } else { best });
+            let Some((saving, face, union)) = best.filter(|(saving, ..)| *saving > MIN_SAVING) else {
+                return grown;
+            };
+            grown.part = union;
+            grown.faces.push(face);
+            grown.saving += saving;
+        }
+    }
+
+    /// The union of two clusters, if one motion explains it.
+    fn one_of(&self, a: &Cluster, b: &Cluster) -> Option<Cluster> {
+        let mut union = self.may_be_one(Cluster::union(&self.felt, a, b))?;
+        if !self.explains(&union) {
+            union.learn_longer(&self.felt);
+        }
+        self.explains(&union).then_some(union)
+    }
+}
+
+/// c of the representatives of a cluster, one by one.
+fn rows(cluster: &Cluster) -> Vec<Vec<f64>> {
+    let loadings = cluster.whitened_loadings();
+    (0..loadings.nrows()).map(|row| loadings.row(row).iter().copied().collect()).collect()
+}
+
+/// Groups of vectors that lie in one subspace of three dimensions, up to this square outside of it: the largest, the largest of the others,
+/// and so on.
+fn flats(vectors: &[Vec<f64>], most: f64) -> Vec<Vec<usize>> {
+    let mut left: Vec<usize> = (0..vectors.len()).collect();
+    let mut found = Vec::new();
+    loop {
+        let tried: Vec<usize> = stratified(left.len(), MAX_TRIED).map(|at| left[at]).collect();
+        let mut best: Vec<usize> = Vec::new();
+        for (first, &a) in tried.iter().enumerate() {
+            for (second, &b) in tried.iter().enumerate().skip(first + 1) {
+                for &c in &tried[second + 1..] {
+                    let Some(basis) = basis([a, b, c].map(|at| vectors[at].as_slice()), most) else {
+                        continue;
+                    };
+                    let inside: Vec<usize> =
+                        left.iter().copied().filter(|&at| outside(&basis, &vectors[at]) <= most).collect();
+                    if inside.len() > best.len() {
+                        best = inside;
+                    }
+                }
+            }
+        }
+        if best.len() < MIN_FACE {
+            return found;
+        }
+        left.retain(|at| !best.contains(at));
+        found.push(best);
+    }
+}
+
+/// An orthonormal basis of three vectors, unless one lies in the span of the others.
+fn basis(vectors: [&[f64]; FACE_RANK], least: f64) -> Option<Vec<Vec<f64>>> {
+    let mut basis: Vec<Vec<f64>> = Vec::new();
+    for vector in vectors {
+        let mut rest = vector.to_vec();
+        for own in &basis {
+            let along = dot(own, &rest);
+            rest.iter_mut().zip(own).for_each(|(rest, own)| *rest -= along * own);
+        }
+        let square = dot(&rest, &rest);
+        if square <= least {
+            return None;
+        }
+        rest.iter_mut().for_each(|value| *value /= square.sqrt());
+        basis.push(rest);
+    }
+    Some(basis)
+}
+
+/// The square of a vector outside of a subspace.
+fn outside(basis: &[Vec<f64>], vector: &[f64]) -> f64 {
+    dot(vector, vector) - basis.iter().map(|own| dot(own, vector).powi(2)).sum::<f64>()
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+#[cfg(test)]
+mod tests;
