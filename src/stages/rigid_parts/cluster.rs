@@ -6,7 +6,7 @@
 //! (Tipping and Bishop 1999). Each loading takes ½ ln n over n, for n samples (Schwarz 1978). Clusters of one part share components,
 //! so that their union is shorter than both.
 
-use faer::Mat;
+use faer::{Mat, MatRef};
 
 use super::als::Als;
 use super::factorisation::{MAX_RANK, principal_axes};
@@ -215,12 +215,23 @@ impl Cluster {
 
     /// Residual variance of the informative roots of each sensor by this motion.
     pub(super) fn residuals(&self, felt: &Felt) -> Vec<f64> {
+        self.residuals_among(&felt.roots, felt.completed.as_ref())
+    }
+
+    /// The same of some sensors, in their order.
+    pub(super) fn residuals_of(&self, felt: &Felt, sensors: &[usize]) -> Vec<f64> {
+        let completed = columns(&felt.completed, sensors);
+        self.residuals_among(&felt.roots.select_as_they_are(sensors), completed.as_ref())
+    }
+
+    /// The same of sensors with these roots, and what completes them.
+    fn residuals_among(&self, roots: &Roots, completed: MatRef<'_, f64>) -> Vec<f64> {
         let squares = product(self.motion.transpose(), self.motion.as_ref());
-        let products = product(felt.completed.transpose(), self.motion.as_ref());
+        let products = product(completed.transpose(), self.motion.as_ref());
         let mut loadings = solved(&squares, &products);
-        let als = Als::new(felt.roots.values.as_ref(), &felt.roots.thresholds);
-        let with_completed = Als::new(felt.roots.values.as_ref(), &felt.roots.thresholds)
-            .with_completed(felt.completed.as_ref(), WEIGHTS[0]);
+        let als = Als::new(roots.values.as_ref(), &roots.thresholds);
+        let with_completed =
+            Als::new(roots.values.as_ref(), &roots.thresholds).with_completed(completed, WEIGHTS[0]);
         for _ in 0..LOADING_ITERATIONS[0] {
             with_completed.update_loadings(loadings.as_mut(), &self.motion);
         }

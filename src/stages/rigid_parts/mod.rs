@@ -14,6 +14,7 @@ mod als;
 mod cluster;
 mod completion;
 mod dispersal;
+mod face_growth;
 mod faces;
 mod factorisation;
 #[cfg(test)]

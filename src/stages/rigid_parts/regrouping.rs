@@ -11,6 +11,7 @@
 use rayon::prelude::*;
 
 use super::cluster::Cluster;
+use super::face_growth::Faces;
 use super::search::{EXPLAINED, MIN_SAVING, Search, smallest};
 use super::stratified::stratified;
 
@@ -23,25 +24,22 @@ const MIN_REST: usize = 2;
 /// Sensors of a cluster whose triples are tried as what spans a face.
 const MAX_TRIED: usize = 20;
 
-/// A part that has grown from a face.
-struct Grown {
-    part: Cluster,
-    faces: Vec<usize>,
-    /// Nats per sample that it saves against its faces one by one.
-    saving: f64,
-}
-
 impl Search {
     /// The parts that grow from the faces of these clusters, if no fewer sensors are on them, and their description is shorter: by what a
     /// merge must save, for each cluster.
     pub(super) fn regrouped(&mut self, clusters: &[Cluster]) -> Option<Vec<Cluster>> {
-        let faces: Vec<Vec<usize>> = clusters.par_iter().flat_map_iter(|own| self.flat_faces(own)).collect();
-        if faces.len() <= clusters.len() {
+        let faces = |(at, own)| self.flat_faces(own).into_iter().map(move |face| (at, face));
+        let faces: Vec<(usize, Vec<usize>)> = clusters.par_iter().enumerate().flat_map_iter(faces).collect();
+        let mut faces = Faces::new(self, faces);
+        let contested = faces.contested();
+        if contested.is_empty() {
             return None;
         }
+        let grown = faces.parts(&contested);
+        let stay = clusters.iter().enumerate().filter(|(at, _)| !contested.contains(at));
+        let parts: Vec<Cluster> = stay.map(|(_, own)| own.clone()).chain(grown).collect();
         let before = self.felt.completed.clone();
         let length = self.length_of(clusters);
-        let parts = self.parts_of(&faces);
         parts.iter().for_each(|part| part.complete_roots(&mut self.felt));
         let every: Vec<usize> = (0..self.felt.roots.sensors()).collect();
         let parts = self.assigned(parts, &every);
@@ -70,77 +68,15 @@ impl Search {
             .map(|flat| flat.into_iter().map(|at| cluster.representatives[at]).collect())
             .map(|sensors| Cluster::of_rank(&self.felt, sensors, FACE_RANK))
             .collect();
-        let residuals: Vec<Vec<f64>> = flats.iter().map(|flat| flat.residuals(&self.felt)).collect();
+        let residuals: Vec<Vec<f64>> =
+            flats.iter().map(|flat| flat.residuals_of(&self.felt, &cluster.sensors)).collect();
         let mut faces = vec![Vec::new(); flats.len() + 1];
-        for &sensor in &cluster.sensors {
-            let best = smallest(residuals.iter().map(|of| of[sensor])).filter(|(_, least)| *least <= most);
-            faces[best.map_or(flats.len(), |(at, _)| at)].push(sensor);
+        for (at, &sensor) in cluster.sensors.iter().enumerate() {
+            let best = smallest(residuals.iter().map(|of| of[at])).filter(|(_, least)| *least <= most);
+            faces[best.map_or(flats.len(), |(flat, _)| flat)].push(sensor);
         }
         faces.retain(|face| face.len() >= MIN_REST);
         faces
-    }
-
-    /// Parts that grow from faces: the one that saves most, then the one that saves most of the other faces, and so on.
-    fn parts_of(&self, faces: &[Vec<usize>]) -> Vec<Cluster> {
-        let faces: Vec<Cluster> =
-            faces.par_iter().map(|face| Cluster::new(&self.felt, face.clone())).collect();
-        let mut left: Vec<usize> = (0..faces.len()).collect();
-        let mut grown: Vec<Grown> = self.grown_from(&faces, &left, &left);
-        let mut parts = Vec::new();
-        while !left.is_empty() {
-            let best = smallest(grown.iter().map(|own| -own.saving))
-                .expect("one grows from each face that is left")
-                .0;
-            let Grown { part, faces: taken, .. } = grown.swap_remove(best);
-            parts.push(part);
-            left.retain(|face| !taken.contains(face));
-            // Parts that had none of these faces stay as they are.
-            grown.retain(|own| !own.faces.iter().any(|face| taken.contains(face)));
-            let anew: Vec<usize> =
-                left.iter().copied().filter(|from| !grown.iter().any(|own| own.faces[0] == *from)).collect();
-            grown.extend(self.grown_from(&faces, &left, &anew));
-            grown.sort_by_key(|own| own.faces[0]);
-        }
-        parts
-    }
-
-    /// The part that grows from each of some faces, of those that are left.
-    fn grown_from(&self, faces: &[Cluster], left: &[usize], from: &[usize]) -> Vec<Grown> {
-        from.par_iter().map(|&from| self.grown_part(faces, left, from)).collect()
-    }
-
-    /// Adds the face that saves most, of those of highest affinity, as long as one motion explains all.
-    fn grown_part(&self, faces: &[Cluster], left: &[usize], from: usize) -> Grown {
-        let mut grown = Grown { part: faces[from].clone(), faces: vec![from], saving: 0.0 };
-        loop {
-            let others = left.iter().copied().filter(|face| !grown.faces.contains(face)).collect();
-            let near = self.nearest(&grown.part.sensors, others, |at| &faces[at].sensors);
-            let with = |face: usize| {
-                let union = self.one_of(&grown.part, &faces[face])?;
-                let before = grown.part.description_length + faces[face].description_length;
-                Some((before - union.description_length, face, union))
-            };
-            let unions: Vec<_> = near.into_par_iter().map(with).collect();
-            let best = unions
-                .into_iter()
-                .flatten()
-                .reduce(|best, other| if other.0 > best.0 { other } else { best });
-            let Some((saving, face, union)) = best.filter(|(saving, ..)| *saving > MIN_SAVING) else {
-                return grown;
-            };
-            grown.part = union;
-            grown.faces.push(face);
-            grown.saving += saving;
-        }
-    }
-
-    /// The union of two clusters, if one motion explains it.
-    fn one_of(&self, a: &Cluster, b: &Cluster) -> Option<Cluster> {
-        let mut union = self.may_be_one(Cluster::union(&self.felt, a, b))?;
-        if !self.explains(&union) {
-            union.learn_longer(&self.felt);
-        }
-        self.explains(&union).then_some(union)
     }
 }
 

@@ -191,14 +191,15 @@ impl Search {
 
     /// Whether two clusters have components in common, and one motion explains both.
     fn is_one(&self, a: &Cluster, b: &Cluster, union: &mut Cluster) -> bool {
-        let tolerance = self.felt.tolerance;
-        if !Cluster::have_common(a, b, union, tolerance) {
-            return false;
+        Cluster::have_common(a, b, union, self.felt.tolerance) && self.explains_in_the_end(union)
+    }
+
+    /// Whether the motion of a cluster explains it, at once or after more iterations.
+    pub(super) fn explains_in_the_end(&self, cluster: &mut Cluster) -> bool {
+        if !self.explains(cluster) {
+            cluster.learn_longer(&self.felt);
         }
-        if !self.explains(union) {
-            union.learn_longer(&self.felt);
-        }
-        self.explains(union)
+        self.explains(cluster)
     }
 
     /// Whether the motion of a cluster explains it, or has too few degrees of freedom to tell.
