@@ -4,7 +4,7 @@ docs/shown/rhythmic, docs/shown/recordings, docs/shown/robots and docs/shown/box
 import json
 import sys
 
-from estimated import ROOT, interval, read, wilson
+from estimated import ROOT, interval, read, revisions, wilson
 
 SHOWN = ROOT / "docs" / "shown"
 # s: one sample, and how long a joint has one target or is locked (bodies.toml).
@@ -61,7 +61,7 @@ def of_recordings():
     right = sum(row["tree_right"] == "true" for row in held_out)
     doubtful = sum(row["fit"] == "doubtful" for row in held_out)
     doubt = "all" if doubtful == len(held_out) else doubtful
-    source = f"Revision {moved[0]['revision'][:7]}; `reproduce/recordings.py`."
+    source = f"Revision {revisions(moved)}; `reproduce/recordings.py`."
     found = (f"Held-out [recorded movements](docs/own-data.md#recorded-movements) (at most {max(int(row['samples']) for row in held_out)} "
              f"samples): trees right in {interval(right, len(held_out))}. The fit is doubtful in {doubt}.")
     return {("README.md", "recorded"): [found], ("docs/own-data.md", "recorded"): [*recorded(moved, held_out), "", source]}
@@ -73,19 +73,19 @@ def of_robots():
     boxes = read(SHOWN / "boxes" / "boxes.csv")
     counted = sum(row["parts"] == row["true_parts"] for row in boxes)
     right = lambda rows: interval(sum(row["tree_right"] == "true" for row in rows), len(rows))
-    made_by = lambda rows, script: f"revision {rows[0]['revision'][:7]}; `reproduce/{script}`"
-    since = "" if ran[0]["revision"] == boxes[0]["revision"] else " The search for parts has changed since."
+    made_by = lambda revision, script: f"revision {revision}; `reproduce/{script}`"
+    since = "" if held_out[0]["revision"] == boxes[0]["revision"] else " The search for parts has changed since."
     wrong = [row for row in ran if row["tree_right"] != "true"]
     surplus = sum(row["joints_right"] == row["true_joints"] and int(row["parts"]) > int(row["true_parts"]) for row in wrong)
     lines = [
         f"- **Public robots.** At p = 0.5 and 100,000 samples, the tree was right for {right(held_out)} robots that were held out. Of those",
         f"  that were looked at while the method was changed, it was {right(seen)}. Trees count here also where the fit is not good",
         f"  (`--force`). In {surplus} of the {len(wrong)} wrong ones the only fault is that there are too many parts.",
-        f"  [Which ones and why](shown/robots/README.md): seed {ran[0]['seed']}; {made_by(ran, 'robots.py')}.{since}",
+        f"  [Which ones and why](shown/robots/README.md): seed {ran[0]['seed']}; {made_by(revisions(ran), 'robots.py')}.{since}",
         f"- **Robots of boxes.** At p = 0.5 and 20,000 samples, the tree was right for {right(boxes)} that were drawn at random,",
         f"  and the number of parts for {interval(counted, len(boxes))} ([page](shown/boxes/README.md)). Sides along a hinge have the same",
         "  velocity along it on both of its parts, and can be taken for one part. Parts whose hinges are parallel can be taken for joined.",
-        f"  Seeds {boxes[0]['body']} to {boxes[-1]['body']}; {made_by(boxes, 'boxes.py')}.",
+        f"  Seeds {boxes[0]['body']} to {boxes[-1]['body']}; {made_by(boxes[0]['revision'][:7], 'boxes.py')}.",
     ]
     return {
         ("README.md", "robots"): [f"Held-out [robots](docs/own-data.md#known-failures): trees right in {right(held_out)}."],

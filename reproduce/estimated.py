@@ -13,6 +13,7 @@ import urllib.request
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PROGRAM = ROOT / "target" / "release" / "bodyschema"
 TRUTH = ["true_parts", "parts", "ari", "true_joints", "joints_right", "tree_right"]
+USES = ["held out", "calibration"]  # what a recording or robot has served
 
 
 def downloaded(file, url, sha256):
@@ -51,6 +52,15 @@ def revision():
         folder = pathlib.Path(name)
         run("simulate", "--body", ROOT / "bodies" / "chain-3.toml", "--duration", 100, "--out", folder / "felt")
         return estimated(folder / "felt", folder / "found", 1)[0]["revision"]
+
+
+def revisions(rows):
+    """The revision that rows were counted with; if it is not one, that of the rows of each use."""
+    of = {use: sorted({row["revision"][:7] for row in rows if row["use"] == use}) for use in USES}
+    counted = {use: " and ".join(own) for use, own in of.items() if own}
+    if len(set(counted.values())) == 1:
+        return next(iter(counted.values()))
+    return ", ".join(f"{own} ({use})" for use, own in counted.items())
 
 
 def noisy(pressures, noise, random):

@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
-"""Estimate the parts of recorded movements of others: reproduce/recordings.py [--files FOLDER] [--out FOLDER]
+"""Estimate the parts of recorded movements of others: reproduce/recordings.py [--use USE] [--files FOLDER] [--out FOLDER]
 
 Downloads the files that recordings.toml names into FOLDER of --files, where they are not there yet, and checks each. Imports each
 as a body, feels its movement (`bodyschema simulate --movement`), and asks `bodyschema estimate` how what it finds compares with the truth.
 Writes recordings.csv and README.md into the folder of --out, which is docs/shown/recordings. Those that are held out come first. Rows of
-the same revision are kept, so a run that was stopped continues. Needs Python 3.11, and no packages. Takes about an hour on two cores.
-Status: 0, or 2 on an error.
+the same revision are kept, so a run that was stopped continues. With --use "held out" or calibration, only recordings of that use are
+counted, and rows of the other use stay as they are. Needs Python 3.11, and no packages. Takes about an hour on two cores, of which those that
+are held out take a fourth. Status: 0, or 2 on an error.
 """
 
 import argparse
@@ -18,13 +19,14 @@ try:
 except ModuleNotFoundError:
     sys.exit("recordings: needs Python 3.11 or newer")
 
-from estimated import ROOT, TRUTH, downloaded, estimated, outcome, read, revision, run, write
+from estimated import ROOT, TRUTH, USES, downloaded, estimated, outcome, read, revision, revisions, run, write
 
 COLUMNS = ["recording", "use", "samples", "sensors", "fit", *TRUTH, "revision"]
 
 
 def main():
     parser = argparse.ArgumentParser(description="Estimate the parts of recorded movements of others.")
+    parser.add_argument("--use", choices=USES, help="count only the recordings of this use")
     parser.add_argument("--files", type=pathlib.Path, default=ROOT / "results" / "recordings", help="folder of the .bvh files")
     parser.add_argument("--out", type=pathlib.Path, default=ROOT / "docs" / "shown" / "recordings", help="folder to write to")
     arguments = parser.parse_args()
@@ -34,15 +36,17 @@ def main():
         downloaded(of(one["name"]), one["url"], one["sha256"])
     arguments.out.mkdir(parents=True, exist_ok=True)
     table, current = arguments.out / "recordings.csv", revision()
-    done = {row["recording"]: row for row in (read(table) if table.exists() else []) if row["revision"] == current}
-    for one in sorted(design["recording"], key=lambda one: one["use"] != "held out"):
-        if one["name"] not in done:
+    counts = lambda use: use == (arguments.use or use)
+    stays = lambda row: row["revision"] == current or not counts(row["use"])
+    done = {row["recording"]: row for row in (read(table) if table.exists() else []) if stays(row)}
+    for one in sorted(design["recording"], key=lambda one: USES.index(one["use"])):
+        if counts(one["use"]) and one["name"] not in done:
             with tempfile.TemporaryDirectory() as folder:
                 row = {"recording": one["name"], "use": one["use"], **measured(of(one["name"]), pathlib.Path(folder), design)}
             done[one["name"]] = {column: str(row[column]) for column in COLUMNS}
             print(" ".join(done[one["name"]].values()), flush=True)
             write(table, COLUMNS, list(done.values()))
-    rows = [done[one["name"]] for one in design["recording"]]
+    rows = [done[one["name"]] for one in design["recording"] if one["name"] in done]
     write(table, COLUMNS, rows)
     (arguments.out / "README.md").write_text(page(rows, design))
     return 0
@@ -63,7 +67,7 @@ def page(rows, design):
     lines = [
         "# Recorded movements",
         "",
-        f"Made by `reproduce/recordings.py` with revision {rows[0]['revision'][:7]}.",
+        f"Made by `reproduce/recordings.py` with revision {revisions(rows)}.",
         "Each movement was recorded by others; the skin is virtual, without noise. Bones of at least",
         f"{design['min_length']} m carry 40 sensors each. [recordings.toml](../../../reproduce/recordings.toml) has the sources, and says",
         "what each recording was used for. A joint is right if it joins parts that turn about one place, and a tree if its parts",

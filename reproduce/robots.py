@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""Estimate the parts of public robots: reproduce/robots.py [--files FOLDER] [--out FOLDER] [--keep FOLDER]
+"""Estimate the parts of public robots: reproduce/robots.py [--use USE] [--movement NAME] [--files FOLDER] [--out FOLDER] [--keep FOLDER]
 
 Downloads the files that robots-files.csv names into FOLDER of --files, where they are not there yet, and checks each. Imports each
 robot of robots.toml as a body, moves it, and asks `bodyschema estimate` how what it finds compares with the truth. Writes robots.csv and
 README.md into the folder of --out, which is docs/shown/robots. Rows of the same revision are kept, so a run that was stopped continues.
+With --use "held out" or calibration, only robots of that use are counted, and with --movement only one movement; other rows stay as they are.
 With --keep, bodies and results stay in a folder for each row, without what was felt over time. Needs Python 3.11, and no packages. Takes
 about 45 minutes for each movement on two busy cores. Status: 0, or 2 on an error.
 """
@@ -23,7 +24,7 @@ try:
 except ModuleNotFoundError:
     sys.exit("robots: needs Python 3.11 or newer")
 
-from estimated import ROOT, TRUTH, downloaded, estimated, fail, interval, read, revision, run, tried, write
+from estimated import ROOT, TRUTH, USES, downloaded, estimated, fail, interval, read, revision, revisions, run, tried, write
 
 COLUMNS = ["robot", "kind", "use", "movement", "seed", "sensors", "fit", *TRUTH, "resolved", "unfelt",
            "either", "astray", "astray_either", "refused", "revision"]
@@ -32,11 +33,14 @@ RAW = "https://raw.githubusercontent.com"
 
 def main():
     parser = argparse.ArgumentParser(description="Estimate the parts of public robots.")
+    design = tomllib.loads((ROOT / "reproduce" / "robots.toml").read_text())
+    parser.add_argument("--use", choices=USES, help="count only the robots of this use")
+    names = [movement["name"] for movement in design["movement"]]
+    parser.add_argument("--movement", choices=names, help="count only this movement")
     parser.add_argument("--files", type=pathlib.Path, default=ROOT / "results" / "robots", help="folder of the descriptions")
     parser.add_argument("--out", type=pathlib.Path, default=ROOT / "docs" / "shown" / "robots", help="folder to write to")
     parser.add_argument("--keep", type=pathlib.Path, help="folder to keep bodies and results in")
     arguments = parser.parse_args()
-    design = tomllib.loads((ROOT / "reproduce" / "robots.toml").read_text())
     design["files"] = read(ROOT / "reproduce" / "robots-files.csv")
     for robot in design["robot"]:
         for one in design["files"]:
@@ -46,9 +50,13 @@ def main():
                 downloaded(place(robot, arguments.files) / one["path"], url, one["sha256"])
     arguments.out.mkdir(parents=True, exist_ok=True)
     table, current = arguments.out / "robots.csv", revision()
-    rows = [row for row in (read(table) if table.exists() else []) if row["revision"] == current]
+    counts = lambda use, movement: use == (arguments.use or use) and movement == (arguments.movement or movement)
+    stays = lambda row: row["revision"] == current or not counts(row["use"], row["movement"])
+    rows = [row for row in (read(table) if table.exists() else []) if stays(row)]
     for movement in design["movement"]:
         for robot in design["robot"]:
+            if not counts(robot["use"], movement["name"]):
+                continue
             if any((row["robot"], row["movement"]) == (robot["name"], movement["name"]) for row in rows):
                 continue
             with tempfile.TemporaryDirectory() as name:
@@ -61,6 +69,9 @@ def main():
             rows.append({column: str(row.get(column, "")) for column in COLUMNS})
             print(" ".join(value for value in rows[-1].values() if value), flush=True)
             write(table, COLUMNS, rows)
+    robots = [robot["name"] for robot in design["robot"]]
+    rows.sort(key=lambda row: (names.index(row["movement"]), robots.index(row["robot"])))
+    write(table, COLUMNS, rows)
     (arguments.out / "README.md").write_text(page(rows, design))
     return 0
 
@@ -215,7 +226,7 @@ def page(rows, design):
         "# Public robots",
         "",
         "How often does `bodyschema estimate` find the parts and the tree of a robot as others describe it? Made by",
-        f"`reproduce/robots.py` with revision {rows[0]['revision'][:7]} and seed {rows[0]['seed']}. [robots.toml](../../../reproduce/robots.toml)",
+        f"`reproduce/robots.py` with revision {revisions(rows)} and seed {rows[0]['seed']}. [robots.toml](../../../reproduce/robots.toml)",
         "has the sources, the rule that chose them before anything was run, and what each was used for.",
         "",
         f"The skin is virtual, without noise: {design['sensors_per_part']} sensors on each body or link. A robot floats in the fluid, with",

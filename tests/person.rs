@@ -66,6 +66,9 @@ fn bones_and_joints_of_a_recorded_person_are_found() {
 
 #[test]
 fn sensors_that_are_not_read_at_the_same_time_do_not_fit() {
-    let found = estimated(touch(|sensor| 7 * sensor));
+    // A fourth of the sensors is enough to tell, and takes much less time.
+    let Tactile { samples, pressures } = touch(|sensor| 7 * sensor);
+    let pressures = pressures.chunks(samples).step_by(4).flatten().copied().collect();
+    let found = estimated(Tactile { samples, pressures });
     assert_eq!(found.fit.verdict, Verdict::DoesNotFit, "{}", found.fit);
 }

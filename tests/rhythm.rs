@@ -191,7 +191,8 @@ fn long_movements_of_all_kinds_of_joints_stay_finite_and_resolved() {
     // As in the study of bodies.
     (settings.physics.step, settings.motion.epoch) = (0.02, 250);
     (settings.physics.duration, settings.motion.targets) = (10_000.0, Targets::Each);
-    let names = ["paper", "arm", "chain-3", "tee", "snake", "quadruped"];
+    // Universal joints, hinges, and a ball joint with both.
+    let names = ["paper", "snake", "quadruped"];
     names.par_iter().for_each(|name| {
         let agent = read_body(&root().join(format!("bodies/{name}.toml"))).unwrap().agent;
         let trajectory = moved(&agent, &settings, 1);

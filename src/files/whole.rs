@@ -57,12 +57,28 @@ fn write_aside(
 /// # Errors
 /// If it cannot be made or written to.
 pub fn prepare_folder(path: &Path) -> Result<(), FileError> {
-    // Others may be looking, too.
-    let probe = path.join(format!(".bodyschema.{}", own("probe")));
+    const PROBE: &str = ".bodyschema.probe";
     fs::create_dir_all(path)
-        .and_then(|()| File::create(&probe))
-        .and_then(|_| fs::remove_file(&probe))
+        // Others may be looking, too.
+        .and_then(|()| File::create(path.join(own(PROBE))))
+        .and_then(|_| fs::read_dir(path))
+        .and_then(|mut entries| {
+            entries.try_for_each(|entry| {
+                let entry = entry?;
+                // Runs that were killed may have left theirs.
+                let is_probe = entry.file_name().to_string_lossy().starts_with(PROBE);
+                if is_probe { removed(&entry.path()) } else { Ok(()) }
+            })
+        })
         .map_err(|error| FileError::new(path, format!("cannot be written to: {error}")))
+}
+
+/// Removes a file that others may remove, too.
+fn removed(path: &Path) -> io::Result<()> {
+    fs::remove_file(path).or_else(|error| match error.kind() {
+        io::ErrorKind::NotFound => Ok(()),
+        _ => Err(error),
+    })
 }
 
 /// Writes a text that several processes may write at once, all of them the same.
@@ -97,4 +113,22 @@ pub fn write_text(path: &Path, text: &str) -> Result<(), FileError> {
 /// If it cannot be read, or is not UTF-8 text.
 pub fn read_text(path: &Path) -> Result<String, FileError> {
     fs::read_to_string(path).map_err(|error| FileError::new(path, format!("cannot be read: {error}")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_folder_that_is_prepared_has_no_probe_in_it() {
+        let folder = tempfile::tempdir().unwrap();
+        let left = folder.path().join(".bodyschema.probe-1-2.partial");
+        for file in [&left, &folder.path().join("result.csv")] {
+            fs::write(file, "").unwrap();
+        }
+        prepare_folder(folder.path()).unwrap();
+        let names = fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().file_name());
+        assert_eq!(names.collect::<Vec<_>>(), ["result.csv"]);
+        assert!(prepare_folder(&folder.path().join("result.csv")).is_err());
+    }
 }
