@@ -89,7 +89,8 @@ fn noise_costs_fewer_parts_if_it_counts_as_no_touch() {
 #[test]
 fn the_study_of_bodies_repeats_itself_and_names_mistakes() {
     let folder = Folder::new();
-    let chain = read("bodies/chain-3.toml");
+    // Half of its sensors, which take less than half of the time.
+    let chain = read("bodies/chain-3.toml").replace("sensors = 40", "sensors = 20");
     folder.write("chain-3.toml", &chain);
     let design = |coordinations: &str| {
         format!(
