@@ -4,11 +4,12 @@
 //! of one part is a linear map of that of the other; parts that are further apart in the tree lose some of it with each joint between them.
 //! Over all trees, that of most information is the most likely one (Chow and Liu 1968). That holds if joints move independently of
 //! each other. Where they are coordinated, as in a walk, opposite limbs share more than neighbours do; only speeds tell the truth
-//! then. So the linear share counts little: it decides where samples are few, and quadratic forms of any two parts may agree.
+//! then. Few samples share much by coordination and by chance, and many samples less. So what is shared linearly counts with a weight that
+//! grows with the number of samples.
 //!
 //! A hinge shares more than the speed of one point: that of every point on its axis, and the velocity along it. Parts whose hinges are
 //! parallel have nearly the same velocity along them, however far apart they are in the tree. The speed of that alone can agree as well as
-//! that of a joint. So all that the quadratic forms of two motions share is counted, too, with the same small weight.
+//! that of a joint. So all that the quadratic forms of two motions share is counted, too, with the same weight.
 
 use nalgebra::DMatrix;
 
@@ -16,8 +17,8 @@ use super::correlation::{Common, factor_with_ridge, whitened};
 
 /// Unexplained share of a joint's squared speed below which a joint tells hardly any more.
 const NEGLIGIBLE: f64 = 1e-3;
-/// Weight of all that two motions share, beside the speed of their joint.
-const SHARED: f64 = 0.1;
+/// Samples at which all that two motions share has half of its weight, beside the speed of their joint.
+const HALF_WEIGHT: f64 = 1e4;
 /// What is added to the variances of components, as a share of their mean: those of hardly any variance are noise.
 const RIDGE: f64 = 1e-3;
 
@@ -26,10 +27,12 @@ pub(super) fn of_speeds(correlation: f64) -> f64 {
     -0.5 * ((1.0 - correlation * correlation + NEGLIGIBLE) / (1.0 + NEGLIGIBLE)).ln()
 }
 
-/// Of a joint, from what the quadratic forms of the motions of its parts have in common, and their linear mutual information, nats.
-pub(super) fn of_joint(common: &Common, linear: f64) -> f64 {
+/// Of a joint, from what the quadratic forms of the motions of its parts have in common over so many samples, and their linear mutual
+/// information, nats.
+pub(super) fn of_joint(common: &Common, linear: f64, samples: usize) -> f64 {
     let quadratic: f64 = common.canonical.iter().copied().map(of_speeds).sum();
-    of_speeds(common.correlation) + SHARED * (linear + quadratic)
+    let weight = samples as f64 / (samples as f64 + HALF_WEIGHT);
+    of_speeds(common.correlation) + weight * (linear + quadratic)
 }
 
 /// The motion of a part as a Gaussian variable about 0.

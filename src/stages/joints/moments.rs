@@ -19,6 +19,8 @@ pub(super) struct Moments {
     components: Products,
     /// Of their quadratic monomials w_i w_j.
     monomials: Products,
+    /// Number of samples.
+    samples: usize,
 }
 
 /// How much each part has to do with each other one: parts × parts, symmetric.
@@ -53,6 +55,7 @@ impl Moments {
             components: Products::new(ranks.iter().copied(), samples, blocks, |t| {
                 components(t).map(scaled(scales[t].sqrt()))
             }),
+            samples,
         }
     }
 
@@ -84,7 +87,7 @@ impl Moments {
             let shared = mutual_information(&own[a].1, &own[b].1, &self.components.of(&linear, a, b));
             for at in [(a, b), (b, a)] {
                 correlations[at] = found.correlation;
-                information[at] = of_joint(&found, shared);
+                information[at] = of_joint(&found, shared, self.samples);
             }
         }
         Dependence { correlations, information }

@@ -27,8 +27,8 @@ pub struct Pair {
     pub other: usize,
     /// Canonical correlation of the squared speed of a joint as both parts feel it, 0 to 1; high if they are joined.
     pub correlation: f64,
-    /// Information of a joint between them, in nats: that of its speeds, and a tenth of all else that their motions share, linear and
-    /// quadratic. The tree has the most (Chow and Liu 1968).
+    /// Information of a joint between them, in nats: that of its speeds, and all else that their motions share, linear and quadratic, with
+    /// a weight that grows with the number of samples. The tree has the most (Chow and Liu 1968).
     pub information: f64,
     /// Bootstrap support, given the parts: share of resampled trees that join the two, 0 to 1.
     pub support: f64,
