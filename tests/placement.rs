@@ -60,17 +60,18 @@ fn joints_are_placed_by_sensors_at_rest_and_the_description_is_read_back() {
     let lengths = |agent: &bodyschema::stages::agent::Agent| agent.joints.len();
     assert_eq!(lengths(&back), lengths(&star));
 
+    // Files of others with these names stay, and are not overwritten.
+    folder.write("own/body.urdf", "<robot/>");
+    folder.succeed("estimate star/tactile.npy --out own");
+    folder.refuse(
+        "estimate star/tactile.npy --sensors rest.csv --out own",
+        "own/body.urdf: is not one that `estimate` wrote",
+    );
+    assert_eq!(folder.text("own/body.urdf"), "<robot/>");
+
     // Without sites, those of before are gone.
     folder.succeed("estimate star/tactile.npy --out found");
     assert!(!folder.at("found/body.urdf").exists() && !folder.at("found/places.csv").exists());
-
-    // Files of others with these names stay, and are not overwritten.
-    folder.write("found/body.urdf", "<robot/>");
-    folder.refuse(
-        "estimate star/tactile.npy --sensors rest.csv --out found",
-        "found/body.urdf: is not one that `estimate` wrote",
-    );
-    assert_eq!(folder.text("found/body.urdf"), "<robot/>");
 }
 
 #[test]
