@@ -82,8 +82,8 @@ def of_robots():
         f"  that were looked at while the method was changed, it was {right(seen)}. Trees count here also where the fit is not good",
         f"  (`--force`). In {surplus} of the {len(wrong)} wrong ones the only fault is that there are too many parts.",
         f"  [Which ones and why](shown/robots/README.md): seed {ran[0]['seed']}; {made_by(revisions(ran), 'robots.py')}.{since}",
-        f"- **Robots of boxes.** At p = 0.5 and 20,000 samples, the tree was right for {right(boxes)} that were drawn at random,",
-        f"  and the number of parts for {interval(counted, len(boxes))} ([page](shown/boxes/README.md)). Sides along a hinge have the same",
+        f"- **Robots of boxes.** At p = 0.5 and 20,000 samples, the tree was right for {right(boxes)} that were drawn at random.",
+        f"  The number of parts was right for {interval(counted, len(boxes))} ([page](shown/boxes/README.md)). Sides along a hinge have the same",
         "  velocity along it on both of its parts, and can be taken for one part. Parts whose hinges are parallel can be taken for joined.",
         f"  Seeds {boxes[0]['body']} to {boxes[-1]['body']}; {made_by(boxes[0]['revision'][:7], 'boxes.py')}.",
     ]
