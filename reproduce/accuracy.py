@@ -2,9 +2,8 @@
 docs/shown/rhythmic, docs/shown/recordings, docs/shown/robots and docs/shown/boxes. Used by docs.py."""
 
 import json
-import sys
 
-from estimated import ROOT, interval, read, revisions, wilson
+from estimated import ROOT, USES, interval, read, revisions, wilson
 
 SHOWN = ROOT / "docs" / "shown"
 # s: one sample, and how long a joint has one target or is locked (bodies.toml).
@@ -15,15 +14,42 @@ BINS = {"50 to 80 %": (0.5, 0.8), "80 to 95 %": (0.8, 0.95), "95 to 99 %": (0.95
 
 def tables():
     """By file and name of its marks: the text between them."""
-    return {**of_bodies(), **of_rhythmic_bodies(), **of_recordings(), **of_robots()}
+    return {**summary(), **of_bodies(), **of_rhythmic_bodies(), **of_recordings(), **of_robots()}
+
+
+def summary():
+    """What was held out, a row for each kind of data."""
+    bodies, gaits = (read(SHOWN / folder / "recordings.csv") for folder in ("bodies", "rhythmic"))
+    held_out = lambda rows: [row for row in rows if row["use"] == "held out"]
+    recordings, robots = (held_out(read(SHOWN / name / f"{name}.csv")) for name in ("recordings", "robots"))
+    robots, boxes = [row for row in robots if row["movement"] == "p = 0.5" and not row["refused"]], read(SHOWN / "boxes" / "boxes.csv")
+    changing = [row for row in gaits if row["kind"] == "changing-gaits"]
+    counts = [int(row["samples"]) for row in recordings]
+    of_study, of_gaits = (run_of(folder)["revision"][:7] for folder in ("bodies", "rhythmic"))
+    rows = [
+        ("[15 bodies](shown/bodies/README.md), random movement", "100,000", of(bodies, 100_000, 0.0), of_study),
+        ("the same, noise of 10 % of the root mean square", "100,000", of(bodies, 100_000, 0.1), of_study),
+        ("the same bodies swim in [gaits that change](estimate.md#rhythmic-movement)", "10,000", changing, of_gaits),
+        ("[movements of people](#recorded-movements), recorded by others", f"{min(counts)} to {max(counts)}", recordings, None),
+        ("[robots of boxes](shown/boxes/README.md), random movement", "20,000", boxes, None),
+        ("[robots as published](shown/robots/README.md), random movement", "100,000", robots, None),
+    ]
+    lines = ["| data | samples | tree right | revision |", "|---|---|---|---|"]
+    for name, samples, own, revision in rows:
+        right = interval(sum(row["tree_right"] == "true" for row in own), len(own))
+        lines.append(f"| {name} | {samples} | {right} | {revision or revisions([{'use': 'held out', **row} for row in own])} |")
+    return {("docs/own-data.md", "summary"): lines}
+
+
+def run_of(folder):
+    """Seed and revision of a study of bodies in docs/shown."""
+    return json.loads((SHOWN / folder / "run.json").read_text())
 
 
 def of_bodies():
     recordings = read(SHOWN / "bodies" / "recordings.csv")
     edges = read(SHOWN / "bodies" / "edges.csv")
     source = made("bodies", "reproduce/bodies.sh")
-    if source is None:
-        return {}
     return {
         ("README.md", "accuracy"): [*shortest(recordings), "", f"[Held out](docs/estimate.md#accuracy): {source[0].lower()}{source[1:]}"],
         ("docs/own-data.md", "lengths"): [*by_length(recordings), "", source],
@@ -35,8 +61,6 @@ def of_bodies():
 
 def of_rhythmic_bodies():
     source = made("rhythmic", "bodyschema bodies --design reproduce/rhythmic-bodies.toml --out rhythmic")
-    if source is None:
-        return {}
     recordings = read(SHOWN / "rhythmic" / "recordings.csv")
     lines = ["| movement | n | parts right | tree right | tree right, true parts given |", "|---|---|---|---|---|"]
     for name, kind in [("one gait", "one-gait"), ("gaits that change", "changing-gaits")]:
@@ -46,12 +70,8 @@ def of_rhythmic_bodies():
 
 
 def made(folder, command):
-    """Seed and revision of a study of bodies in docs/shown, if its manifest is still there."""
-    manifest = SHOWN / folder / "manifest.json"
-    if not manifest.is_file():
-        print(f"docs.py: the accuracy of `estimate` is skipped: docs/shown/{folder} has no manifest; run {command}", file=sys.stderr)
-        return None
-    facts = json.loads(manifest.read_text())
+    """Seed, command and revision of a study of bodies in docs/shown."""
+    facts = run_of(folder)
     return f"Seed {facts['seed']}; `{command}` of revision {facts['revision'][:7]}."
 
 
@@ -61,10 +81,9 @@ def of_recordings():
     right = sum(row["tree_right"] == "true" for row in held_out)
     doubtful = sum(row["fit"] == "doubtful" for row in held_out)
     doubt = "all" if doubtful == len(held_out) else doubtful
-    source = f"Revision {revisions(moved)}; `reproduce/recordings.py`."
     found = (f"Held-out [recorded movements](docs/own-data.md#recorded-movements) (at most {max(int(row['samples']) for row in held_out)} "
-             f"samples): trees right in {interval(right, len(held_out))}. The fit is doubtful in {doubt}.")
-    return {("README.md", "recorded"): [found], ("docs/own-data.md", "recorded"): [*recorded(moved, held_out), "", source]}
+             f"samples): trees right in {interval(right, len(held_out))}. `estimate` calls {doubt} doubtful, since they are short.")
+    return {("README.md", "recorded"): [found], ("docs/own-data.md", "recorded"): recorded(moved)}
 
 
 def of_robots():
@@ -79,10 +98,10 @@ def of_robots():
     surplus = sum(row["joints_right"] == row["true_joints"] and int(row["parts"]) > int(row["true_parts"]) for row in wrong)
     lines = [
         f"- **Public robots.** At p = 0.5 and 100,000 samples, the tree was right for {right(held_out)} robots that were held out. Of those",
-        f"  that were looked at while the method was changed, it was {right(seen)}. Trees count here also where the fit is not good",
-        f"  (`--force`). In {surplus} of the {len(wrong)} wrong ones the only fault is that there are too many parts.",
+        f"  that the method was developed on, it was {right(seen)}. Trees count here also where the fit is not good",
+        f"  (`--force`). Of all {len(ran)}, {len(wrong)} trees are wrong; in {surplus} of these the only fault is a surplus part.",
         f"  [Which ones and why](shown/robots/README.md): seed {ran[0]['seed']}; {made_by(revisions(ran), 'robots.py')}.{since}",
-        f"- **Robots of boxes.** At p = 0.5 and 20,000 samples, the tree was right for {right(boxes)} that were drawn at random.",
+        f"- **Robots of boxes.** At p = 0.5 and 20,000 samples, the tree was right for {right(boxes)}, which were drawn at random.",
         f"  The number of parts was right for {interval(counted, len(boxes))} ([page](shown/boxes/README.md)). Sides along a hinge have the same",
         "  velocity along it on both of its parts, and can be taken for one part. Parts whose hinges are parallel can be taken for joined.",
         f"  Seeds {boxes[0]['body']} to {boxes[-1]['body']}; {made_by(boxes[0]['revision'][:7], 'boxes.py')}.",
@@ -95,7 +114,7 @@ def of_robots():
 
 def shortest(recordings):
     rows = [("100,000 samples", 100_000, 0.0), ("10,000 samples", 10_000, 0.0), ("1,000 samples", 1_000, 0.0),
-            ("100,000 samples, noise of a tenth", 100_000, 0.1)]
+            ("100,000 samples, noise of 10 %", 100_000, 0.1)]
     coordinations = ", ".join(f"{p:g}" for p in sorted({float(row["coordination"]) for row in recordings}))
     lines = [f"| simulated random movement, 15 bodies, p of {coordinations} | trees right | 95 % interval | n |", "|---|---|---|---|"]
     for name, samples, noise in rows:
@@ -139,7 +158,7 @@ def support(recordings, edges):
 def certain(recordings, edges):
     """The same of edges with a support of 100 %."""
     lines = ["| | right parts | wrong parts |", "|---|---|---|"]
-    for name, noise in [("no noise", 0.0), ("noise of a tenth", 0.1)]:
+    for name, noise in [("no noise", 0.0), ("noise of 10 %", 0.1)]:
         cells = [supported(recordings, edges, BINS["100 %"], noise, right) for right in (True, False)]
         lines.append(f"| {name} | {' | '.join(cells)} |")
     return lines
@@ -154,19 +173,19 @@ def supported(recordings, edges, ends, noise, parts_right):
     return rate(own, "right", f"; n = {len(own):,}") if own else "–"
 
 
-def recorded(moved, held_out):
-    """What came out of recorded movements, in words."""
-    mean = lambda rows: f"{sum(float(row['ari']) for row in rows) / len(rows):.2f}"
-    right = lambda rows: interval(sum(row["tree_right"] == "true" for row in rows), len(rows))
-    long = [row for row in moved if int(row["samples"]) >= 1000]
-    short = [row for row in moved if int(row["samples"]) < 1000]
-    return [
-        f"- **Parts**: the mean adjusted Rand index is {mean(moved)} (n = {len(moved)}). In the {len(held_out)} that were held out it is "
-        f"{mean(held_out)}.",
-        f"- **Trees** were right in {right(moved)}, and in {right(held_out)} that were held out.",
-        f"- **By length**: of those with at least 1,000 samples, {right(long)} trees are right, and of shorter ones {right(short)}. "
-        f"Of the long ones, {sum(row['use'] == 'held out' for row in long)} were held out.",
-    ]
+def recorded(moved):
+    """What came out of recorded movements, by use and length."""
+    lines = ["| recordings | samples | mean adjusted Rand index | tree right | revision |", "|---|---|---|---|---|"]
+    for use in USES:
+        for name, is_long in [("fewer than 1,000 samples", False), ("1,000 samples or more", True)]:
+            own = [row for row in moved if row["use"] == use and (int(row["samples"]) >= 1000) == is_long]
+            if own:
+                counts = [int(row["samples"]) for row in own]
+                mean = sum(float(row["ari"]) for row in own) / len(own)
+                right = interval(sum(row["tree_right"] == "true" for row in own), len(own))
+                cells = [f"{use}, {name}", f"{min(counts):,} to {max(counts):,}", f"{mean:.3f}", right, revisions(own)]
+                lines.append(f"| {' | '.join(cells)} |")
+    return [*lines, "", "Made by `reproduce/recordings.py`."]
 
 
 def kinds(recordings):

@@ -47,9 +47,7 @@ def measured(body, revision):
         words = ["--settings", folder / "settings.toml", "--duration", DURATION, "--seed", body, "--out", folder / "felt"]
         run("simulate", "--body", folder / "body.toml", *words)
         summary, truth = estimated(folder / "felt", folder / "found", body)
-    row = {"body": body, "revision": revision, "sensors": summary["sensors"], "fit": summary["fit"], **truth}
-    print(" ".join(map(str, row.values())), flush=True)
-    return [{column: str(row[column]) for column in COLUMNS}]
+    return [{"body": body, "revision": revision, "sensors": summary["sensors"], "fit": summary["fit"], **truth}]
 
 
 def drawn(draw):

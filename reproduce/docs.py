@@ -18,6 +18,7 @@ What RESULTS does not hold is skipped, with a line on standard error. Needs Pyth
 import csv
 import gzip
 import json
+import math
 import pathlib
 import re
 import shutil
@@ -56,7 +57,7 @@ FLUID = ["physics.fluid_density", "physics.angular_momentum", "sense.threshold"]
 def main():
     results = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "results"
     experiments = [experiment_1, experiment_2, confirmation_1, confirmation_2]
-    studies = [sensitivity, ablation, shorter_step, momentum, mixing, bodies]
+    studies = [sensitivity, ablation, shorter_step, momentum, mixing, bodies, rhythmic]
     for step in [*experiments, *studies]:
         try:
             step(results)
@@ -67,6 +68,7 @@ def main():
     answers()
     for (page, name), lines in accuracy.tables().items():
         between_marks(ROOT / page, name, "\n".join(lines))
+    multiverse()
     open_settings()
     for script in ["reproduce/claims.py", "article/values.py"]:
         if status := subprocess.run([sys.executable, ROOT / script]).returncode:
@@ -275,6 +277,30 @@ def table_row(cells):
     return f"| {' | '.join(cells)} |"
 
 
+# ---- The multiverse
+
+
+def multiverse():
+    """In how many replications the headline and the dependence on d and p hold, of those that can judge them."""
+    with open(SHOWN / "multiverse" / "shares.csv", newline="") as file:
+        rows = {row["claim"]: row for row in csv.DictReader(file) if (row["part"], row["group"]) == ("multiverse", "all")}
+    planned = math.prod(tomllib.loads((ROOT / "reproduce" / "multiverse.toml").read_text())["draws"].values())
+    headline = rows[HEADLINE]
+    ran, judged = f"{int(headline['n']):,}", headline["judged"]
+    left = "" if int(headline["n"]) == planned else "; unfinished"
+    percents = lambda row: f"{100 * float(row['low']):.0f} to {100 * float(row['high']):.0f} %"
+    between_marks(ROOT / "README.md", "multiverse", "\n".join([
+        f"- **Other choices mostly fail.** We vary 23 open settings. Of {ran} combinations of reasonable values, {judged} give eligible samples.",
+        f"  The headline holds in [{headline['holds']} of the {judged}](docs/shown/multiverse/README.md) ({percents(headline)}{left}).",
+    ]))
+    share = lambda claim: f"{rows[claim]['holds']} of {rows[claim]['judged']} ({percents(rows[claim])})"
+    between_marks(ROOT / "docs" / "multiverse.md", "multiverse", "\n".join([
+        f"So far, {ran} of {planned:,} replications have run. The published tree accuracy can be judged where a sample is eligible, in {judged}. It",
+        f"holds in {share(HEADLINE)}, the dependence on d in {share('dependence on d')}, and the dependence on p in",
+        f"{share('dependence on p')}. In brackets: 95 % intervals over movements.",
+    ]))
+
+
 # ---- The studies
 
 
@@ -296,8 +322,19 @@ def momentum(results):
 
 def bodies(results):
     study(results / "bodies", ["recordings.csv", "edges.csv"], "bodies.md")
-    # For the seed and the revision.
-    copy([results / "bodies" / "manifest.json"], SHOWN / "bodies")
+    say_run(results / "bodies")
+
+
+def rhythmic(results):
+    copy([results / "rhythmic" / "recordings.csv"], SHOWN / "rhythmic")
+    say_run(results / "rhythmic")
+
+
+def say_run(folder):
+    """Keep the seed and the revision of a study."""
+    facts = manifest(folder)
+    kept = {"seed": facts["seed"], "revision": facts["revision"]}
+    (SHOWN / folder.name / "run.json").write_text(json.dumps(kept, indent=2) + "\n")
 
 
 def mixing(results):

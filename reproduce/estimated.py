@@ -68,15 +68,23 @@ def noisy(pressures, noise, random):
     return pressures + noise * (pressures**2).mean(0) ** 0.5 * random.standard_normal(pressures.shape)
 
 
-def resumed(table, columns, jobs, measured):
-    """Write the rows of all jobs to a table, and return them. A run that was stopped continues after its last job."""
+def resumed(table, columns, jobs, measured, keeps=lambda row: False, order=lambda row: 0):
+    """Write the rows of all jobs to a table, in an order, and return them. A run that was stopped continues after its last job.
+
+    Rows of an earlier table that `keeps` approves of stay, and the jobs that they are of are not done again."""
     part = table.with_suffix(".csv.part")
-    rows = read(part) if part.exists() else []
+    is_of = lambda row, job: all(row[key] == str(value) for key, value in job.items())
+    rows = [row for row in read(table) if keeps(row)] if table.exists() else []
+    if part.exists():
+        rows = [row for row in read(part) if keeps(row) or any(is_of(row, job) for job in jobs)]
     for job in jobs:
-        named = {key: str(value) for key, value in job.items()}
-        if not any(named.items() <= row.items() for row in rows):
-            rows += measured(**job)
+        if not any(is_of(row, job) for row in rows):
+            for row in measured(**job):
+                rows.append({column: str(row.get(column, "")) for column in columns})
+                print(" ".join(value for value in rows[-1].values() if value), flush=True)
             write(part, columns, rows)
+    rows.sort(key=order)
+    write(part, columns, rows)
     part.replace(table)
     return rows
 

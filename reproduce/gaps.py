@@ -98,8 +98,7 @@ def measured(body, seed):
             left = summary["sensors"] - summary["dropped"]
             missing = summary["missing"] / (left * summary["samples"])
             row = [summary["revision"], body, seed, condition, f"{missing:.4f}", left, truth["ari"], truth["tree_right"]]
-            print(*row, flush=True)
-            yield dict(zip(COLUMNS, map(str, row)))
+            yield dict(zip(COLUMNS, row))
 
 
 def page(rows):

@@ -19,7 +19,7 @@ try:
 except ModuleNotFoundError:
     sys.exit("recordings: needs Python 3.11 or newer")
 
-from estimated import ROOT, TRUTH, USES, downloaded, estimated, outcome, read, revision, revisions, run, write
+from estimated import ROOT, TRUTH, USES, downloaded, estimated, outcome, resumed, revision, revisions, run
 
 COLUMNS = ["recording", "use", "samples", "sensors", "fit", *TRUTH, "revision"]
 
@@ -36,30 +36,26 @@ def main():
         downloaded(of(one["name"]), one["url"], one["sha256"])
     arguments.out.mkdir(parents=True, exist_ok=True)
     table, current = arguments.out / "recordings.csv", revision()
-    counts = lambda use: use == (arguments.use or use)
-    stays = lambda row: row["revision"] == current or not counts(row["use"])
-    done = {row["recording"]: row for row in (read(table) if table.exists() else []) if stays(row)}
-    for one in sorted(design["recording"], key=lambda one: USES.index(one["use"])):
-        if counts(one["use"]) and one["name"] not in done:
-            with tempfile.TemporaryDirectory() as folder:
-                row = {"recording": one["name"], "use": one["use"], **measured(of(one["name"]), pathlib.Path(folder), design)}
-            done[one["name"]] = {column: str(row[column]) for column in COLUMNS}
-            print(" ".join(done[one["name"]].values()), flush=True)
-            write(table, COLUMNS, list(done.values()))
-    rows = [done[one["name"]] for one in design["recording"] if one["name"] in done]
-    write(table, COLUMNS, rows)
+    counts = lambda one: one["use"] == (arguments.use or one["use"])
+    stays = lambda row: row["revision"] == current or not counts(row)
+    names = [one["name"] for one in design["recording"]]
+    recordings = sorted(filter(counts, design["recording"]), key=lambda one: USES.index(one["use"]))
+    jobs = [{"recording": one["name"], "use": one["use"], "revision": current} for one in recordings]
+    measured = lambda **job: [{**job, **found(of(job["recording"]), design)}]
+    rows = resumed(table, COLUMNS, jobs, measured, stays, lambda row: names.index(row["recording"]))
     (arguments.out / "README.md").write_text(page(rows, design))
     return 0
 
 
-def measured(file, folder, design):
+def found(file, design):
     """What `estimate` finds in a recorded movement, compared with the truth."""
-    body, seed, felt = folder / "body.toml", str(design["seed"]), folder / "felt"
-    run("body", "import", file, "--min-length", str(design["min_length"]), "--out", body)
-    run("simulate", "--body", body, "--movement", file, "--seed", seed, "--out", felt)
-    summary, truth = estimated(felt, folder / "found", seed)
+    with tempfile.TemporaryDirectory() as name:
+        folder, seed = pathlib.Path(name), design["seed"]
+        run("body", "import", file, "--min-length", design["min_length"], "--out", folder / "body.toml")
+        run("simulate", "--body", folder / "body.toml", "--movement", file, "--seed", seed, "--out", folder / "felt")
+        summary, truth = estimated(folder / "felt", folder / "found", seed)
     sensors = summary["sensors"] - summary["dropped"]
-    return {"samples": summary["samples"], "sensors": sensors, "fit": summary["fit"], **truth, "revision": summary["revision"]}
+    return {"samples": summary["samples"], "sensors": sensors, "fit": summary["fit"], **truth}
 
 
 def page(rows, design):

@@ -59,10 +59,9 @@ def measured(body, seconds, noise):
         for what, repeated, right in things(folder):
             counts[what, repeated, "count"] += 1
             counts[what, repeated, "right"] += right
-    print(body, seconds, noise, summary["fit"], flush=True)
     keys = sorted({key[:2] for key in counts})
-    return [dict(zip(COLUMNS, map(str, [summary["revision"], body, seconds, noise, what, repeated, counts[what, repeated, "count"],
-                                        counts[what, repeated, "right"]]))) for what, repeated in keys]
+    return [dict(zip(COLUMNS, [summary["revision"], body, seconds, noise, what, repeated, counts[what, repeated, "count"],
+                               counts[what, repeated, "right"]])) for what, repeated in keys]
 
 
 def things(folder):

@@ -24,7 +24,7 @@ try:
 except ModuleNotFoundError:
     sys.exit("robots: needs Python 3.11 or newer")
 
-from estimated import ROOT, TRUTH, USES, downloaded, estimated, fail, interval, read, revision, revisions, run, tried, write
+from estimated import ROOT, TRUTH, USES, downloaded, estimated, fail, interval, read, resumed, revision, revisions, run, tried
 
 COLUMNS = ["robot", "kind", "use", "movement", "seed", "sensors", "fit", *TRUTH, "resolved", "unfelt",
            "either", "astray", "astray_either", "refused", "revision"]
@@ -47,46 +47,44 @@ def main():
             if one["robot"] == robot["name"]:
                 commit = design["commits"][robot["from"]]
                 url = f"{RAW}/{robot['from']}/{commit}/{one['path']}"
-                downloaded(place(robot, arguments.files) / one["path"], url, one["sha256"])
+                downloaded(folder_of(robot, arguments.files) / one["path"], url, one["sha256"])
     arguments.out.mkdir(parents=True, exist_ok=True)
     table, current = arguments.out / "robots.csv", revision()
-    counts = lambda use, movement: use == (arguments.use or use) and movement == (arguments.movement or movement)
-    stays = lambda row: row["revision"] == current or not counts(row["use"], row["movement"])
-    rows = [row for row in (read(table) if table.exists() else []) if stays(row)]
-    for movement in design["movement"]:
-        for robot in design["robot"]:
-            if not counts(robot["use"], movement["name"]):
-                continue
-            if any((row["robot"], row["movement"]) == (robot["name"], movement["name"]) for row in rows):
-                continue
-            with tempfile.TemporaryDirectory() as name:
-                folder = pathlib.Path(name)
-                row = {"robot": robot["name"], "kind": robot["kind"], "use": robot["use"], "movement": movement["name"],
-                       "seed": design["seed"], "revision": current,
-                       **measured(place(robot, arguments.files) / robot["file"], folder, movement, design)}
-                if arguments.keep:
-                    keep(folder, arguments.keep / f"{robot['name']}, {movement['name']}")
-            rows.append({column: str(row.get(column, "")) for column in COLUMNS})
-            print(" ".join(value for value in rows[-1].values() if value), flush=True)
-            write(table, COLUMNS, rows)
-    robots = [robot["name"] for robot in design["robot"]]
-    rows.sort(key=lambda row: (names.index(row["movement"]), robots.index(row["robot"])))
-    write(table, COLUMNS, rows)
+    robots, movements = ({one["name"]: one for one in design[key]} for key in ("robot", "movement"))
+    is_asked = lambda value, asked: value == (asked or value)
+    counts = lambda row: is_asked(row["use"], arguments.use) and is_asked(row["movement"], arguments.movement)
+    stays = lambda row: row["revision"] == current or not counts(row)
+    place = lambda row: (names.index(row["movement"]), list(robots).index(row["robot"]))
+    jobs = [{"robot": robot, "kind": one["kind"], "use": one["use"], "movement": movement, "seed": design["seed"], "revision": current}
+            for movement in movements for robot, one in robots.items()]
+
+    def measured(**job):
+        robot, name = robots[job["robot"]], f"{job['robot']}, {job['movement']}"
+        file = folder_of(robot, arguments.files) / robot["file"]
+        return [{**job, **found(file, movements[job["movement"]], design, arguments.keep and arguments.keep / name)}]
+
+    rows = resumed(table, COLUMNS, list(filter(counts, jobs)), measured, stays, place)
     (arguments.out / "README.md").write_text(page(rows, design))
     return 0
 
 
-def place(robot, files):
+def folder_of(robot, files):
     return files / robot["from"].replace("/", "+")
 
 
-def keep(folder, kept):
-    """Keep what is small."""
-    shutil.copytree(folder, kept, ignore=shutil.ignore_patterns("tactile.npy", "poses.npy", "report.html"), dirs_exist_ok=True)
+def found(file, movement, design, kept):
+    """What `estimate` finds in how a robot feels a movement, compared with the truth; or why it is refused. What is small is kept in a
+    folder, if there is one."""
+    with tempfile.TemporaryDirectory() as name:
+        row = found_in(pathlib.Path(name), file, movement, design)
+        if kept:
+            large = shutil.ignore_patterns("tactile.npy", "poses.npy", "report.html")
+            shutil.copytree(name, kept, ignore=large, dirs_exist_ok=True)
+    return row
 
 
-def measured(file, folder, movement, design):
-    """What `estimate` finds in how a robot feels a movement, compared with the truth; or why it is refused."""
+def found_in(folder, file, movement, design):
+    """The same, in a folder."""
     body, settings, felt = folder / "body.toml", folder / "settings.toml", folder / "felt"
     imported = tried("body", "import", file, "--sensors-per-part", design["sensors_per_part"], "--out", body)
     if imported.returncode == 2:

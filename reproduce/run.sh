@@ -9,6 +9,10 @@ shift
 
 "$root/reproduce/build.sh" || exit 2
 
+# A check of the installation leaves the results of a full run alone.
+for argument in "$@"; do
+    case $argument in --quick) name=$name-quick ;; esac
+done
 out=(--out "$root/results/$name")
 for argument in "$@"; do
     case $argument in --out | --out=*) out=() ;; esac
