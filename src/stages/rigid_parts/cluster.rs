@@ -29,9 +29,6 @@ const MOMENTUM: [f64; 2] = [0.5, 0.98];
 const PACE: [f64; 2] = [1.1, 0.5];
 /// The least tolerance: what the iterations leave.
 pub(super) const LEAST_TOLERANCE: f64 = 3e-4;
-/// Change of the residual variance, in units of the tolerance, at which an iteration is the last one: more would hardly change the description
-/// length. Below the least tolerance, only the end of the iterations tells.
-const SETTLED: f64 = 1e-3;
 /// Residual variance at which more iterations say nothing new.
 pub(super) const ROUNDING: f64 = 1e-11;
 /// Degrees of freedom of its residual that a part must have per sample. With fewer, any sensors fit.
@@ -278,14 +275,12 @@ impl Cluster {
                 *loadings = next;
                 break;
             }
-            let has_settled = felt.tolerance >= LEAST_TOLERANCE
-                && (residual - before).abs() <= SETTLED * felt.tolerance * freedom;
             let mut step = 0.0;
             if residual > before {
                 momentum = f64::max(MOMENTUM[0], momentum * PACE[1]);
             } else {
                 momentum = f64::min(MOMENTUM[1], momentum * PACE[0]);
-                step = if iteration == 0 || has_settled { 0.0 } else { momentum };
+                step = if iteration == 0 { 0.0 } else { momentum };
             }
             before = residual;
             *loadings = Mat::from_fn(next.nrows(), next.ncols(), |i, j| {
@@ -294,9 +289,6 @@ impl Cluster {
             last = next;
             als.update_motion(loadings.as_ref(), motion);
             fill_in(completed, &own, loadings, motion);
-            if has_settled {
-                break;
-            }
         }
         let [residual, freedom] = plain.residual(loadings.as_ref(), motion);
         let whitened = whitened(loadings, motion);
