@@ -80,9 +80,9 @@ def of_recordings():
     held_out = [row for row in moved if row["use"] == "held out"]
     right = sum(row["tree_right"] == "true" for row in held_out)
     doubtful = sum(row["fit"] == "doubtful" for row in held_out)
-    doubt = "all" if doubtful == len(held_out) else doubtful
+    doubt = "all" if doubtful == len(held_out) else str(doubtful)
     found = (f"Held-out [recorded movements](docs/own-data.md#recorded-movements) (at most {max(int(row['samples']) for row in held_out)} "
-             f"samples): trees right in {interval(right, len(held_out))}. `estimate` calls {doubt} doubtful, since they are short.")
+             f"samples): trees right in {interval(right, len(held_out))}. {doubt.capitalize()} are called doubtful.")
     return {("README.md", "recorded"): [found], ("docs/own-data.md", "recorded"): recorded(moved)}
 
 
