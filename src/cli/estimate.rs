@@ -1,6 +1,5 @@
 //! The subcommand estimate.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -18,7 +17,7 @@ use super::tree::{self, refuse_truth};
 use crate::analysis::statistics::mean;
 use crate::estimate::{self, Repeats, estimate};
 use crate::files::tables::{write_rows, write_rows_of};
-use crate::files::{prepare_folder, write_text};
+use crate::files::{prepare_folder, remove_if_there, write_text};
 use crate::numerics::rng::stream;
 use crate::recording::Recording;
 use crate::report::estimated::page;
@@ -239,9 +238,7 @@ fn write(
     } else {
         for name in tree::FILES.into_iter().chain(["report.html"]) {
             let file = out.join(name);
-            if file.exists() {
-                fs::remove_file(&file).with_context(|| file.display().to_string())?;
-            }
+            remove_if_there(&file).with_context(|| file.display().to_string())?;
         }
     }
     repeats::write(out, again, &found.joints.tree)?;

@@ -1,6 +1,5 @@
 //! Write and say how often parts and joints were found again from resampled times.
 
-use std::fs;
 use std::path::Path;
 
 use anyhow::{Context, Result};
@@ -8,6 +7,7 @@ use serde::Serialize;
 
 use super::output::say;
 use crate::estimate::Repeats;
+use crate::files::remove_if_there;
 use crate::files::tables::write_rows_of;
 use crate::stages::tree::Edge;
 
@@ -26,11 +26,7 @@ struct Row {
 pub(super) fn write(out: &Path, repeats: Option<&Repeats>, tree: &[Edge]) -> Result<()> {
     let file = out.join(FILE);
     let Some(repeats) = repeats else {
-        return if file.exists() {
-            fs::remove_file(&file).with_context(|| file.display().to_string())
-        } else {
-            Ok(())
-        };
+        return remove_if_there(&file).with_context(|| file.display().to_string());
     };
     let parts = repeats.parts.iter().map(|(&part, &repeated)| Row { part, joined_to: None, repeated });
     let joints = tree.iter().zip(&repeats.tree).map(|(edge, &repeated)| Row {

@@ -27,5 +27,5 @@ pub use self::error::{FileError, one_line};
 pub use self::front_end::FrontEnd;
 pub use self::hash::sha256;
 pub(crate) use self::hash::sha256_of_text;
-pub(crate) use self::whole::{is_same_file, write_same_text};
+pub(crate) use self::whole::{is_same_file, remove_if_there, write_same_text};
 pub use self::whole::{prepare_folder, read_text, write_text, write_whole};

@@ -7,6 +7,7 @@ use std::path::Path;
 use npyz::Order;
 use serde::{Deserialize, Serialize};
 
+use super::body::ShapeName;
 use super::error::FileError;
 use super::npy::{read_matrix, write};
 use super::sensor_sites::{read_sites_of_solids, write_sites};
@@ -32,21 +33,12 @@ pub(crate) struct MovedBody {
 struct SolidRow {
     solid: usize,
     part: usize,
-    shape: Kind,
+    shape: ShapeName,
     radius_m: Option<f64>,
     length_m: Option<f64>,
     x_m: Option<f64>,
     y_m: Option<f64>,
     z_m: Option<f64>,
-}
-
-#[derive(Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-enum Kind {
-    Cylinder,
-    Capsule,
-    Sphere,
-    Box,
 }
 
 impl MovedBody {
@@ -124,7 +116,7 @@ fn solid_row(solid: usize, part: usize, shape: &Shape) -> SolidRow {
     let none = SolidRow {
         solid,
         part,
-        shape: Kind::Box,
+        shape: ShapeName::Box,
         radius_m: None,
         length_m: None,
         x_m: None,
@@ -133,12 +125,12 @@ fn solid_row(solid: usize, part: usize, shape: &Shape) -> SolidRow {
     };
     match *shape {
         Shape::Cylinder { radius, length } => {
-            SolidRow { shape: Kind::Cylinder, radius_m: Some(radius), length_m: Some(length), ..none }
+            SolidRow { shape: ShapeName::Cylinder, radius_m: Some(radius), length_m: Some(length), ..none }
         }
         Shape::Capsule { radius, length } => {
-            SolidRow { shape: Kind::Capsule, radius_m: Some(radius), length_m: Some(length), ..none }
+            SolidRow { shape: ShapeName::Capsule, radius_m: Some(radius), length_m: Some(length), ..none }
         }
-        Shape::Sphere { radius } => SolidRow { shape: Kind::Sphere, radius_m: Some(radius), ..none },
+        Shape::Sphere { radius } => SolidRow { shape: ShapeName::Sphere, radius_m: Some(radius), ..none },
         Shape::Box { sides: [x, y, z] } => SolidRow { x_m: Some(x), y_m: Some(y), z_m: Some(z), ..none },
     }
 }
@@ -148,10 +140,10 @@ fn shape_of(row: &SolidRow, number: impl Fn(Option<f64>) -> Option<f64>) -> Opti
     let radius = || number(row.radius_m);
     let length = || number(row.length_m);
     Some(match row.shape {
-        Kind::Cylinder => Shape::Cylinder { radius: radius()?, length: length()? },
-        Kind::Capsule => Shape::Capsule { radius: radius()?, length: length()? },
-        Kind::Sphere => Shape::Sphere { radius: radius()? },
-        Kind::Box => Shape::Box { sides: [number(row.x_m)?, number(row.y_m)?, number(row.z_m)?] },
+        ShapeName::Cylinder => Shape::Cylinder { radius: radius()?, length: length()? },
+        ShapeName::Capsule => Shape::Capsule { radius: radius()?, length: length()? },
+        ShapeName::Sphere => Shape::Sphere { radius: radius()? },
+        ShapeName::Box => Shape::Box { sides: [number(row.x_m)?, number(row.y_m)?, number(row.z_m)?] },
     })
 }
 

@@ -1,6 +1,5 @@
 //! Write results into a folder, and remember what was written for its manifest and its crate.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
@@ -10,7 +9,7 @@ use super::error::FileError;
 use super::manifest::{HashedFile, Manifest};
 use super::ro_crate;
 use super::tables::write_rows;
-use super::whole::write_text;
+use super::whole::{remove_if_there, write_text};
 
 /// A folder of results that remembers the names of its files, in the order in which they were written.
 #[derive(Debug)]
@@ -72,8 +71,8 @@ impl ResultFolder {
     /// # Errors
     /// If one is there and cannot be removed.
     pub(crate) fn remove(&self, names: impl IntoIterator<Item = String>) -> Result<(), FileError> {
-        for path in names.into_iter().map(|name| self.path.join(name)).filter(|path| path.exists()) {
-            fs::remove_file(&path)
+        for path in names.into_iter().map(|name| self.path.join(name)) {
+            remove_if_there(&path)
                 .map_err(|error| FileError::new(&path, format!("cannot be replaced: {error}")))?;
         }
         Ok(())

@@ -67,14 +67,14 @@ pub fn prepare_folder(path: &Path) -> Result<(), FileError> {
                 let entry = entry?;
                 // Runs that were killed may have left theirs.
                 let is_probe = entry.file_name().to_string_lossy().starts_with(PROBE);
-                if is_probe { removed(&entry.path()) } else { Ok(()) }
+                if is_probe { remove_if_there(&entry.path()) } else { Ok(()) }
             })
         })
         .map_err(|error| FileError::new(path, format!("cannot be written to: {error}")))
 }
 
-/// Removes a file that others may remove, too.
-fn removed(path: &Path) -> io::Result<()> {
+/// Removes a file that may not be there, or that others may remove, too.
+pub(crate) fn remove_if_there(path: &Path) -> io::Result<()> {
     fs::remove_file(path).or_else(|error| match error.kind() {
         io::ErrorKind::NotFound => Ok(()),
         _ => Err(error),

@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::numerics::range::{Checked, gain, moderate, positive};
 use crate::numerics::simd::vectorised;
-use crate::stages::agent::{Agent, Site, Vector3};
+use crate::stages::agent::{Agent, Site};
 use crate::stages::simulate::{Instants, Pose, Trajectory};
 
 /// The tactile sense (equation 27).
@@ -118,10 +118,9 @@ fn motion<'a>(trajectory: &'a Trajectory, part: usize, interval: f64) -> Vec<Mot
 
 /// The twelve numbers of a part between two samples.
 fn shared(before: &Pose, now: &Pose, interval: f64) -> [f64; 12] {
-    let turned_back = |v: Vector3| [0, 1, 2].map(|i| (0..3).map(|k| now.rotation[k][i] * v[k]).sum::<f64>());
-    let moved = turned_back([0, 1, 2].map(|k| now.position[k] - before.position[k]));
+    let moved = now.turned_back([0, 1, 2].map(|k| now.position[k] - before.position[k]));
     let columns =
-        [0, 1, 2].map(|j| turned_back([0, 1, 2].map(|k| now.rotation[k][j] - before.rotation[k][j])));
+        [0, 1, 2].map(|j| now.turned_back([0, 1, 2].map(|k| now.rotation[k][j] - before.rotation[k][j])));
     let mut numbers = [0.0; 12];
     for i in 0..3 {
         numbers[i] = moved[i] / interval;

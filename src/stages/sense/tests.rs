@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::numerics::rng::stream;
-use crate::stages::agent::Skin;
+use crate::stages::agent::{Skin, Vector3};
 use crate::stages::simulate::fixtures::{INTERVAL, Scene};
 use crate::stages::simulate::simulate;
 

@@ -40,6 +40,11 @@ impl Pose {
         [0, 1, 2]
             .map(|i| self.position[i] + self.rotation[i].iter().zip(point).map(|(r, x)| r * x).sum::<f64>())
     }
+
+    /// A vector of the world, in the frame of the part.
+    pub(crate) fn turned_back(&self, vector: Vector3) -> Vector3 {
+        [0, 1, 2].map(|i| (0..3).map(|k| self.rotation[k][i] * vector[k]).sum::<f64>())
+    }
 }
 
 /// A body whose motion cannot be followed with the present settings.

@@ -137,10 +137,9 @@ pub fn still_on(agent: &Agent, trajectory: &Trajectory) -> Vec<Option<usize>> {
 
 /// The pose of a part in the frame of another.
 fn relative(on: &Pose, part: &Pose) -> Pose {
-    let back = |v: Vector3| [0, 1, 2].map(|i| (0..3).map(|k| on.rotation[k][i] * v[k]).sum::<f64>());
-    let columns = [0, 1, 2].map(|column| back(part.rotation.map(|row| row[column])));
+    let columns = [0, 1, 2].map(|column| on.turned_back(part.rotation.map(|row| row[column])));
     Pose {
-        position: back([0, 1, 2].map(|k| part.position[k] - on.position[k])),
+        position: on.turned_back([0, 1, 2].map(|k| part.position[k] - on.position[k])),
         rotation: [0, 1, 2].map(|row| columns.map(|column| column[row])),
     }
 }
