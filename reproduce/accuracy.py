@@ -2,8 +2,9 @@
 docs/shown/rhythmic, docs/shown/recordings, docs/shown/robots and docs/shown/boxes. Used by docs.py."""
 
 import json
+import tomllib
 
-from estimated import ROOT, USES, interval, read, revisions, wilson
+from estimated import ROOT, USES, interval, read, revisions, trees_right, wilson
 
 SHOWN = ROOT / "docs" / "shown"
 # s: one sample, and how long a joint has one target or is locked (bodies.toml).
@@ -26,18 +27,18 @@ def summary():
     changing = [row for row in gaits if row["kind"] == "changing-gaits"]
     counts = [int(row["samples"]) for row in recordings]
     of_study, of_gaits = (run_of(folder)["revision"][:7] for folder in ("bodies", "rhythmic"))
+    of_boxes = boxes[0]["revision"][:7]
     rows = [
         ("[15 bodies](shown/bodies/README.md), random movement", "100,000", of(bodies, 100_000, 0.0), of_study),
         ("the same, noise of 10 % of the root mean square", "100,000", of(bodies, 100_000, 0.1), of_study),
         ("the same bodies swim in [gaits that change](estimate.md#rhythmic-movement)", "10,000", changing, of_gaits),
-        ("[movements of people](#recorded-movements), recorded by others", f"{min(counts)} to {max(counts)}", recordings, None),
-        ("[robots of boxes](shown/boxes/README.md), random movement", "20,000", boxes, None),
-        ("[robots as published](shown/robots/README.md), random movement", "100,000", robots, None),
+        ("[movements of people](#recorded-movements), recorded by others", f"{min(counts)} to {max(counts)}", recordings, revisions(recordings)),
+        ("[robots of boxes](shown/boxes/README.md), random movement", "20,000", boxes, of_boxes),
+        ("[robots as published](shown/robots/README.md), random movement", "100,000", robots, revisions(robots)),
     ]
     lines = ["| data | samples | tree right | revision |", "|---|---|---|---|"]
     for name, samples, own, revision in rows:
-        right = interval(sum(row["tree_right"] == "true" for row in own), len(own))
-        lines.append(f"| {name} | {samples} | {right} | {revision or revisions([{'use': 'held out', **row} for row in own])} |")
+        lines.append(f"| {name} | {samples} | {trees_right(own)} | {revision} |")
     return {("docs/own-data.md", "summary"): lines}
 
 
@@ -66,7 +67,10 @@ def of_rhythmic_bodies():
     for name, kind in [("one gait", "one-gait"), ("gaits that change", "changing-gaits")]:
         own = [row for row in recordings if row["kind"] == kind]
         lines.append(f"| {' | '.join([name, str(len(own)), *rates(own)])} |")
-    return {("docs/estimate.md", "rhythmic"): [*lines, "", source]}
+    wrong = [row for row in recordings if row["kind"] == "changing-gaits" and row["tree_right"] != "true"]
+    own = sum(row["parts_right"] == "true" for row in wrong)
+    told = f"Of the {len(wrong)} wrong trees in gaits that change, {own} have the right parts."
+    return {("docs/estimate.md", "rhythmic"): [*lines, "", f"{told} {source}"]}
 
 
 def made(folder, command):
@@ -78,12 +82,17 @@ def made(folder, command):
 def of_recordings():
     moved = read(SHOWN / "recordings" / "recordings.csv")
     held_out = [row for row in moved if row["use"] == "held out"]
-    right = sum(row["tree_right"] == "true" for row in held_out)
-    doubtful = sum(row["fit"] == "doubtful" for row in held_out)
-    doubt = "all" if doubtful == len(held_out) else str(doubtful)
-    found = (f"Held-out [recorded movements](docs/own-data.md#recorded-movements) (at most {max(int(row['samples']) for row in held_out)} "
-             f"samples): trees right in {interval(right, len(held_out))}. {doubt.capitalize()} are called doubtful.")
-    return {("README.md", "recorded"): [found], ("docs/own-data.md", "recorded"): recorded(moved)}
+    most, seed = max(int(row["samples"]) for row in held_out), design("recordings")["seed"]
+    found = [
+        f"Held-out [recorded movements](docs/own-data.md#recorded-movements), at most {most} samples: trees right in",
+        f"{trees_right(held_out)}. Seed {seed}; `reproduce/recordings.py`, {revisions(held_out)}.",
+    ]
+    return {("README.md", "recorded"): found, ("docs/own-data.md", "recorded"): recorded(moved)}
+
+
+def design(name):
+    """A design of this folder."""
+    return tomllib.loads((ROOT / "reproduce" / f"{name}.toml").read_text())
 
 
 def of_robots():
@@ -91,23 +100,24 @@ def of_robots():
     held_out, seen = ([row for row in ran if row["use"] == use] for use in ("held out", "calibration"))
     boxes = read(SHOWN / "boxes" / "boxes.csv")
     counted = sum(row["parts"] == row["true_parts"] for row in boxes)
-    right = lambda rows: interval(sum(row["tree_right"] == "true" for row in rows), len(rows))
     made_by = lambda revision, script: f"revision {revision}; `reproduce/{script}`"
-    since = "" if held_out[0]["revision"] == boxes[0]["revision"] else " The search for parts has changed since."
     wrong = [row for row in ran if row["tree_right"] != "true"]
     surplus = sum(row["joints_right"] == row["true_joints"] and int(row["parts"]) > int(row["true_parts"]) for row in wrong)
     lines = [
-        f"- **Public robots.** At p = 0.5 and 100,000 samples, the tree was right for {right(held_out)} robots that were held out. Of those",
-        f"  that the method was developed on, it was {right(seen)}. Trees count here also where the fit is not good",
+        f"- **Public robots.** At p = 0.5 and 100,000 samples, the tree was right for {trees_right(held_out)} robots that were held out. Of those",
+        f"  that the method was developed on, it was {trees_right(seen)}. Trees count here also where the fit is not good",
         f"  (`--force`). Of all {len(ran)}, {len(wrong)} trees are wrong; in {surplus} of these the only fault is a surplus part.",
-        f"  [Which ones and why](shown/robots/README.md): seed {ran[0]['seed']}; {made_by(revisions(ran), 'robots.py')}.{since}",
-        f"- **Robots of boxes.** At p = 0.5 and 20,000 samples, the tree was right for {right(boxes)}, which were drawn at random.",
+        f"  [Which ones and why](shown/robots/README.md): seed {ran[0]['seed']}; {made_by(revisions(ran), 'robots.py')}.",
+        f"- **Robots of boxes.** At p = 0.5 and 20,000 samples, the tree was right for {trees_right(boxes)}, which were drawn at random.",
         f"  The number of parts was right for {interval(counted, len(boxes))} ([page](shown/boxes/README.md)). Sides along a hinge have the same",
         "  velocity along it on both of its parts, and can be taken for one part. Parts whose hinges are parallel can be taken for joined.",
         f"  Seeds {boxes[0]['body']} to {boxes[-1]['body']}; {made_by(boxes[0]['revision'][:7], 'boxes.py')}.",
     ]
     return {
-        ("README.md", "robots"): [f"Held-out [robots](docs/own-data.md#known-failures): trees right in {right(held_out)}."],
+        ("README.md", "robots"): [
+            f"Held-out [robots](docs/own-data.md#known-failures), 100,000 samples: trees right in {trees_right(held_out)}.",
+            f"Seed {ran[0]['seed']}; `reproduce/robots.py`, {revisions(held_out)}.",
+        ],
         ("docs/own-data.md", "robots"): lines,
     }
 
@@ -182,8 +192,7 @@ def recorded(moved):
             if own:
                 counts = [int(row["samples"]) for row in own]
                 mean = sum(float(row["ari"]) for row in own) / len(own)
-                right = interval(sum(row["tree_right"] == "true" for row in own), len(own))
-                cells = [f"{use}, {name}", f"{min(counts):,} to {max(counts):,}", f"{mean:.3f}", right, revisions(own)]
+                cells = [f"{use}, {name}", f"{min(counts):,} to {max(counts):,}", f"{mean:.3f}", trees_right(own), revisions(own)]
                 lines.append(f"| {' | '.join(cells)} |")
     return [*lines, "", "Made by `reproduce/recordings.py`."]
 

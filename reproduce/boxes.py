@@ -13,7 +13,7 @@ import random
 import sys
 import tempfile
 
-from estimated import ROOT, TRUTH, estimated, interval, outcome, resumed, revision, run
+from estimated import ROOT, TRUTH, estimated, interval, outcome, resumed, revision, run, trees_right
 
 SENSORS, DURATION = 40, 2000  # of each part; s
 SETTINGS = "physics.step = 0.02\nmotion.epoch = 250\nmotion.coordination = 0.5\n"
@@ -92,7 +92,6 @@ def solid(shape, centre, size):
 
 
 def page(rows):
-    trees = sum(row["tree_right"] == "true" for row in rows)
     parts = sum(row["parts"] == row["true_parts"] for row in rows)
     mean = sum(float(row["ari"]) for row in rows) / len(rows)
     first, last = rows[0]["body"], rows[-1]["body"]
@@ -104,7 +103,7 @@ def page(rows):
         f"easier. Each part has {SENSORS} virtual sensors, without noise, and p is 0.5. A movement has {10 * DURATION:,} samples of 0.1 s. Made by",
         f"`reproduce/boxes.py` with revision {rows[0]['revision'][:7]} and seeds {first} to {last}, each of a body and its movement.",
         "",
-        f"The tree was right in {interval(trees, len(rows))}, and the number of parts in {interval(parts, len(rows))}",
+        f"The tree was right in {trees_right(rows)}, and the number of parts in {interval(parts, len(rows))}",
         f"(95 % intervals, Wilson). The adjusted Rand index was {mean:.3f} on average.",
         "",
         "| body | fit | true parts | found | adjusted Rand index | joints right | tree |",

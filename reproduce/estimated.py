@@ -125,6 +125,11 @@ def interval(count, of):
     return f"{count} of {of} ({100 * low:.0f} to {100 * high:.0f} %)"
 
 
+def trees_right(rows):
+    """How many trees are right, with the 95 % interval of their share."""
+    return interval(sum(row["tree_right"] == "true" for row in rows), len(rows)) if rows else "–"
+
+
 def outcome(row):
     """Cells of a table: true parts, parts found, adjusted Rand index, joints right, and the tree."""
     tree = "right" if row["tree_right"] == "true" else "wrong"

@@ -16,7 +16,7 @@ try:
 except ModuleNotFoundError:
     sys.exit("gaps: needs NumPy")
 
-from estimated import ROOT, estimated, interval, noisy, resumed, run
+from estimated import ROOT, estimated, interval, noisy, resumed, run, trees_right
 
 BODIES, SEEDS = ["star", "tee", "quadruped"], range(4830001, 4830005)
 COLUMNS = ["revision", "body", "seed", "gaps", "missing", "sensors_left", "ari", "tree_right"]
@@ -120,9 +120,8 @@ def page(rows):
         own = [row for row in rows if row["gaps"] == condition]
         mean = lambda column: sum(float(row[column]) for row in own) / len(own)
         aris = [float(row["ari"]) for row in own]
-        right, trees = sum(ari == 1 for ari in aris), sum(row["tree_right"] == "true" for row in own)
         lines.append(f"| {condition} | {100 * mean('missing'):.1f} % | {mean('sensors_left'):.0f} | {sum(aris) / len(aris):.3f} "
-                     f"({min(aris):.3f}) | {interval(right, len(own))} | {interval(trees, len(own))} |")
+                     f"({min(aris):.3f}) | {interval(sum(ari == 1 for ari in aris), len(own))} | {trees_right(own)} |")
     return "\n".join(lines) + "\n"
 
 

@@ -19,7 +19,7 @@ try:
 except ModuleNotFoundError:
     sys.exit("recordings: needs Python 3.11 or newer")
 
-from estimated import ROOT, TRUTH, USES, downloaded, estimated, outcome, resumed, revision, revisions, run
+from estimated import ROOT, TRUTH, USES, downloaded, estimated, outcome, resumed, revision, revisions, run, trees_right
 
 COLUMNS = ["recording", "use", "samples", "sensors", "fit", *TRUTH, "revision"]
 
@@ -80,8 +80,7 @@ def page(rows, design):
         if not own:
             continue
         mean = sum(float(row["ari"]) for row in own) / len(own)
-        right = sum(row["tree_right"] == "true" for row in own)
-        lines += ["", f"Mean of the adjusted Rand index, {what}: {mean:.3f} (n = {len(own)}); trees right: {right} of {len(own)}."]
+        lines += ["", f"Mean of the adjusted Rand index, {what}: {mean:.3f} (n = {len(own)}); trees right: {trees_right(own)}."]
     return "\n".join(lines) + "\n"
 
 

@@ -24,7 +24,7 @@ try:
 except ModuleNotFoundError:
     sys.exit("robots: needs Python 3.11 or newer")
 
-from estimated import ROOT, TRUTH, USES, downloaded, estimated, fail, interval, read, resumed, revision, revisions, run, tried
+from estimated import ROOT, TRUTH, USES, downloaded, estimated, fail, read, resumed, revision, revisions, run, trees_right, tried
 
 COLUMNS = ["robot", "kind", "use", "movement", "seed", "sensors", "fit", *TRUTH, "resolved", "unfelt",
            "either", "astray", "astray_either", "refused", "revision"]
@@ -35,8 +35,8 @@ def main():
     parser = argparse.ArgumentParser(description="Estimate the parts of public robots.")
     design = tomllib.loads((ROOT / "reproduce" / "robots.toml").read_text())
     parser.add_argument("--use", choices=USES, help="count only the robots of this use")
-    names = [movement["name"] for movement in design["movement"]]
-    parser.add_argument("--movement", choices=names, help="count only this movement")
+    robots, movements = ({one["name"]: one for one in design[key]} for key in ("robot", "movement"))
+    parser.add_argument("--movement", choices=list(movements), help="count only this movement")
     parser.add_argument("--files", type=pathlib.Path, default=ROOT / "results" / "robots", help="folder of the descriptions")
     parser.add_argument("--out", type=pathlib.Path, default=ROOT / "docs" / "shown" / "robots", help="folder to write to")
     parser.add_argument("--keep", type=pathlib.Path, help="folder to keep bodies and results in")
@@ -50,11 +50,10 @@ def main():
                 downloaded(folder_of(robot, arguments.files) / one["path"], url, one["sha256"])
     arguments.out.mkdir(parents=True, exist_ok=True)
     table, current = arguments.out / "robots.csv", revision()
-    robots, movements = ({one["name"]: one for one in design[key]} for key in ("robot", "movement"))
     is_asked = lambda value, asked: value == (asked or value)
     counts = lambda row: is_asked(row["use"], arguments.use) and is_asked(row["movement"], arguments.movement)
     stays = lambda row: row["revision"] == current or not counts(row)
-    place = lambda row: (names.index(row["movement"]), list(robots).index(row["robot"]))
+    place = lambda row: (list(movements).index(row["movement"]), list(robots).index(row["robot"]))
     jobs = [{"robot": robot, "kind": one["kind"], "use": one["use"], "movement": movement, "seed": design["seed"], "revision": current}
             for movement in movements for robot, one in robots.items()]
 
@@ -252,7 +251,7 @@ def page(rows, design):
             done, held = [row for row in own if not row["refused"]], [row for row in own if row["use"] == "held out"]
             ran = [row for row in held if not row["refused"]]
             groups = [done, ran, [row for row in ran if not row["unfelt"]], held]
-            lines.append("| " + " | ".join([movement, *map(right, groups)]) + " |")
+            lines.append("| " + " | ".join([movement, *map(trees_right, groups)]) + " |")
     lines += [
         "",
         f"With {first}, by kind:",
@@ -262,7 +261,7 @@ def page(rows, design):
     ]
     for kind in dict.fromkeys(robot["kind"] for robot in design["robot"]):
         own = [row for row in rows if (row["kind"], row["movement"]) == (kind, first) and not row["refused"]]
-        lines.append(f"| {kind} | {right(own)} | {right([row for row in own if row['use'] == 'held out'])} |")
+        lines.append(f"| {kind} | {trees_right(own)} | {trees_right([row for row in own if row['use'] == 'held out'])} |")
     lines += [
         "",
         "## Robot by robot",
@@ -324,11 +323,6 @@ def page(rows, design):
     ]
     lines += [f"- {row['robot']}: {row['unfelt']}" for row in done if row["unfelt"]] or ["No robot has such a joint."]
     return "\n".join(lines) + "\n"
-
-
-def right(rows):
-    """How many trees are right, and the 95 % interval."""
-    return interval(sum(row["tree_right"] == "true" for row in rows), len(rows)) if rows else "–"
 
 
 def tree(row):
