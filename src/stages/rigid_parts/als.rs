@@ -6,8 +6,32 @@
 use faer::{Mat, MatMut, MatRef};
 use pulp::{Arch, Simd, WithSimd};
 
+use self::series::{Felt, Series};
+use self::sums::{Responses, Sums};
 use super::regressions::{LANES, Regressions};
 use crate::numerics::interrupt;
+
+mod series;
+mod sums;
+
+/// Samples whose motion stays in the fastest memory while it is summed for one sensor after the other.
+const BLOCK: usize = 256;
+
+/// Runs work that is compiled for each rank of a motion subspace; nothing, for a rank of 0.
+macro_rules! with_rank {
+    ($rank:expr, $work:ident { $($field:ident: $value:expr),* }) => {
+        match $rank {
+            0 => Default::default(),
+            1 => Arch::new().dispatch($work::<1> { $($field: $value),* }),
+            2 => Arch::new().dispatch($work::<2> { $($field: $value),* }),
+            3 => Arch::new().dispatch($work::<3> { $($field: $value),* }),
+            4 => Arch::new().dispatch($work::<4> { $($field: $value),* }),
+            5 => Arch::new().dispatch($work::<5> { $($field: $value),* }),
+            6 => Arch::new().dispatch($work::<6> { $($field: $value),* }),
+            rank => unreachable!("a motion subspace has rank six at most, not {rank}"),
+        }
+    };
+}
 
 /// Roots of some sensors, samples × sensors, whose loadings c and motion w are updated in turn.
 pub(crate) struct Als<'a> {
@@ -38,36 +62,16 @@ impl<'a> Als<'a> {
     /// In: c, sensors × k. In and out: w, samples × k.
     pub(crate) fn update_motion(&self, loadings: MatRef<'_, f64>, motion: &mut Mat<f64>) {
         interrupt::check();
-        let loadings = by_row(loadings);
-        match motion.ncols() {
-            0 => (),
-            1 => Arch::new().dispatch(UpdateMotion::<1> { als: self, loadings: &loadings, motion }),
-            2 => Arch::new().dispatch(UpdateMotion::<2> { als: self, loadings: &loadings, motion }),
-            3 => Arch::new().dispatch(UpdateMotion::<3> { als: self, loadings: &loadings, motion }),
-            4 => Arch::new().dispatch(UpdateMotion::<4> { als: self, loadings: &loadings, motion }),
-            5 => Arch::new().dispatch(UpdateMotion::<5> { als: self, loadings: &loadings, motion }),
-            6 => Arch::new().dispatch(UpdateMotion::<6> { als: self, loadings: &loadings, motion }),
-            k => unreachable!("a motion subspace has rank six at most, not {k}"),
-        }
+        with_rank!(motion.ncols(), UpdateMotion { als: self, loadings: &by_row(loadings), motion: motion });
     }
 
     /// Updates c of each sensor by least squares over its informative roots, by c as it was.
     ///
     /// In and out: c, sensors × k. In: w, samples × k.
     pub(super) fn update_loadings(&self, mut loadings: MatMut<'_, f64>, motion: &Mat<f64>) {
-        let mut rows = by_row(loadings.as_ref());
-        let k = motion.ncols();
-        match k {
-            0 => return,
-            1 => Arch::new().dispatch(UpdateLoadings::<1> { als: self, loadings: &mut rows, motion }),
-            2 => Arch::new().dispatch(UpdateLoadings::<2> { als: self, loadings: &mut rows, motion }),
-            3 => Arch::new().dispatch(UpdateLoadings::<3> { als: self, loadings: &mut rows, motion }),
-            4 => Arch::new().dispatch(UpdateLoadings::<4> { als: self, loadings: &mut rows, motion }),
-            5 => Arch::new().dispatch(UpdateLoadings::<5> { als: self, loadings: &mut rows, motion }),
-            6 => Arch::new().dispatch(UpdateLoadings::<6> { als: self, loadings: &mut rows, motion }),
-            k => unreachable!("a motion subspace has rank six at most, not {k}"),
-        }
-        for (sensor, row) in rows.chunks(k).enumerate() {
+        let (mut rows, rank) = (by_row(loadings.as_ref()), motion.ncols());
+        with_rank!(rank, UpdateLoadings { als: self, loadings: &mut rows, motion: motion });
+        for (sensor, row) in rows.chunks(rank.max(1)).enumerate() {
             row.iter().enumerate().for_each(|(at, value)| loadings[(sensor, at)] = *value);
         }
     }
@@ -75,99 +79,49 @@ impl<'a> Als<'a> {
     /// Residual sum of squares of the informative roots, and its degrees of freedom: informative roots beyond the k that w
     /// takes. Both are averages over samples.
     pub(super) fn residual(&self, loadings: MatRef<'_, f64>, motion: &Mat<f64>) -> [f64; 2] {
-        let work = Residual { als: self, loadings: &by_row(loadings), motion };
-        Arch::new().dispatch(work).map(|sum| sum / motion.nrows() as f64)
+        let sums: [f64; 2] =
+            with_rank!(motion.ncols(), Residual { als: self, loadings: &by_row(loadings), motion: motion });
+        sums.map(|sum| sum / motion.nrows() as f64)
     }
 
     /// For each sensor, the residual sum of squares of its informative roots, and their number.
     pub(crate) fn residuals(&self, loadings: MatRef<'_, f64>, motion: &Mat<f64>) -> Vec<[f64; 2]> {
-        Arch::new().dispatch(Residuals { als: self, loadings: &by_row(loadings), motion })
+        with_rank!(motion.ncols(), Residuals { als: self, loadings: &by_row(loadings), motion: motion })
     }
 
-    /// Roots of a sensor at samples from `t` on, as many as a register holds.
-    #[inline(always)]
-    fn roots<S: Simd>(&self, simd: S, sensor: usize, t: usize) -> S::f64s {
-        load(simd, self.values[sensor], t)
+    /// Replaces roots that are not felt by what is predicted, which is no more than the root; any, where this is missing.
+    ///
+    /// In: c, sensors × k; w, samples × k. In and out: roots, samples × sensors.
+    pub(super) fn complete(&self, loadings: MatRef<'_, f64>, motion: &Mat<f64>, roots: &mut Mat<f64>) {
+        with_rank!(
+            motion.ncols(),
+            Complete { als: self, loadings: &by_row(loadings), motion: motion, roots: roots }
+        );
     }
 
-    /// The informative ones of the roots of a sensor at samples from `t` on, where these are predicted.
+    /// What each sensor felt.
     #[inline(always)]
-    fn informative<S: Simd>(&self, simd: S, sensor: usize, t: usize, predicted: S::f64s) -> Informative<S> {
-        let (root, threshold) = (self.roots(simd, sensor, t), load(simd, &self.thresholds, t));
-        let is_felt = simd.greater_than_or_equal_f64s(root, threshold);
-        let should_be = simd.greater_than_f64s(predicted, root);
-        let is_informative = simd.or_m64s(is_felt, should_be);
-        let none = simd.splat_f64s(0.0);
-        let (weight, instead) = match self.completed.get(sensor) {
-            // After the last sample, motion and roots are 0, and nothing is added.
-            Some(completed) => (simd.splat_f64s(self.weight), load(simd, completed, t)),
-            None => (none, none),
+    fn felt<S: Simd>(&self, simd: S) -> Vec<Felt<'_, S>> {
+        let series = |columns: &[&'a [f64]], sensor: usize| {
+            Series::new(simd, columns.get(sensor).copied().unwrap_or_default())
         };
-        Informative {
-            weight: simd.select_f64s(is_informative, simd.splat_f64s(1.0), weight),
-            product: simd.select_f64s(is_informative, root, simd.mul_f64s(weight, instead)),
-        }
+        let felt =
+            |sensor| Felt { roots: series(&self.values, sensor), completed: series(&self.completed, sensor) };
+        (0..self.values.len()).map(felt).collect()
     }
 
-    /// The errors of the informative ones of these roots, 0 for others, and their weights.
+    /// At each sample, the threshold; and the weight of a completed root.
     #[inline(always)]
-    fn error<S: Simd>(
-        &self,
-        simd: S,
-        sensor: usize,
-        t: usize,
-        c: &[f64],
-        motion: &Mat<f64>,
-    ) -> (S::f64s, S::f64s) {
-        let mut predicted = simd.splat_f64s(0.0);
-        for (at, c) in c.iter().enumerate() {
-            let w = load(simd, motion.col_as_slice(at), t);
-            predicted = simd.mul_add_f64s(simd.splat_f64s(*c), w, predicted);
-        }
-        let Informative { weight, product } = self.informative(simd, sensor, t, predicted);
-        (simd.sub_f64s(product, simd.mul_f64s(weight, predicted)), weight)
+    fn limits<S: Simd>(&self, simd: S) -> impl Fn(usize) -> [S::f64s; 2] {
+        // Infinite after the last sample, where motion and roots are 0: nothing is added there.
+        let (thresholds, weight) = (Series::<S>::new(simd, &self.thresholds), simd.splat_f64s(self.weight));
+        move |register| [thresholds.at(register), weight]
     }
-}
-
-/// The informative ones of some roots.
-struct Informative<S: Simd> {
-    /// 1 where a root is informative; elsewhere 0, or the weight of a completed one.
-    weight: S::f64s,
-    /// The root times its weight.
-    product: S::f64s,
 }
 
 fn by_sensor(values: MatRef<'_, f64>) -> Vec<&[f64]> {
     let column = |sensor| values.col(sensor).try_as_col_major().expect("roots are kept by sensor").as_slice();
     (0..values.ncols()).map(column).collect()
-}
-
-/// The sums of as many regressions on K regressors as a register holds.
-struct Sums<S: Simd, const K: usize> {
-    /// Of products of two regressors, the second not after the first.
-    squares: [[S::f64s; K]; K],
-    /// Of products of a regressor with the response.
-    products: [S::f64s; K],
-}
-
-impl<S: Simd, const K: usize> Sums<S, K> {
-    #[inline(always)]
-    fn new(simd: S) -> Self {
-        let none = simd.splat_f64s(0.0);
-        Self { squares: [[none; K]; K], products: [none; K] }
-    }
-
-    #[inline(always)]
-    #[expect(clippy::needless_range_loop, reason = "rows and columns of a triangle")]
-    fn add(&mut self, simd: S, regressors: &[S::f64s; K], response: &Informative<S>) {
-        for a in 0..K {
-            let own = simd.mul_f64s(response.weight, regressors[a]);
-            self.products[a] = simd.mul_add_f64s(response.product, regressors[a], self.products[a]);
-            for b in 0..=a {
-                self.squares[a][b] = simd.mul_add_f64s(own, regressors[b], self.squares[a][b]);
-            }
-        }
-    }
 }
 
 /// [`Als::update_motion`] for k = K.
@@ -183,19 +137,20 @@ impl<const K: usize> WithSimd for UpdateMotion<'_, K> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let Self { als, loadings, motion } = self;
-        let samples = motion.nrows();
+        let (samples, rows) = (motion.nrows(), loadings.as_chunks::<K>().0);
+        let (felt, limits, moved) = (als.felt(simd), als.limits(simd), motion_of::<S, K>(simd, motion));
+        let mut responses = no_responses(simd, rows.len());
         for first in (0..samples).step_by(LANES) {
             let count = LANES.min(samples - first);
             let mut regressions = Regressions::<K>::new();
             for at in (0..count).step_by(S::F64_LANES) {
-                let t = first + at;
-                let w = motion_from::<S, K>(simd, motion, t);
-                let mut sums = Sums::<S, K>::new(simd);
-                for (sensor, c) in loadings.as_chunks::<K>().0.iter().enumerate() {
-                    let c = splat(simd, c);
-                    let response = als.informative(simd, sensor, t, dot(simd, &c, &w));
-                    sums.add(simd, &c, &response);
+                let register = (first + at) / S::F64_LANES;
+                let (limits, w) = (limits(register), &moved[register]);
+                for ((felt, c), response) in felt.iter().zip(rows).zip(&mut responses) {
+                    *response = felt.responses(simd, register, limits, dot(simd, &splat(simd, c), w));
                 }
+                let mut sums = Sums::<S, K>::new(simd);
+                sums.add(simd, &responses, rows, |c| simd.splat_f64s(*c));
                 for a in 0..K {
                     store::<S>(&mut regressions.products[a], at, sums.products[a]);
                     for b in 0..=a {
@@ -224,17 +179,23 @@ impl<const K: usize> WithSimd for UpdateLoadings<'_, K> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let Self { als, loadings, motion } = self;
+        let (felt, limits, moved) = (als.felt(simd), als.limits(simd), motion_of::<S, K>(simd, motion));
+        let block = BLOCK / S::F64_LANES;
+        let mut responses = no_responses(simd, block);
         let rows = loadings.as_chunks_mut::<K>().0;
-        for (first, rows) in (0..).step_by(LANES).zip(rows.chunks_mut(LANES)) {
+        for (felt, rows) in felt.chunks(LANES).zip(rows.chunks_mut(LANES)) {
             let mut regressions = Regressions::<K>::new();
-            for (lane, row) in rows.iter().enumerate() {
-                let c = splat(simd, row);
-                let mut sums = Sums::<S, K>::new(simd);
-                for t in (0..motion.nrows()).step_by(S::F64_LANES) {
-                    let w = motion_from::<S, K>(simd, motion, t);
-                    let response = als.informative(simd, first + lane, t, dot(simd, &c, &w));
-                    sums.add(simd, &w, &response);
+            let mut sums: Vec<Sums<S, K>> = rows.iter().map(|_| Sums::new(simd)).collect();
+            for (number, moved) in moved.chunks(block).enumerate() {
+                for ((felt, row), sums) in felt.iter().zip(&*rows).zip(&mut sums) {
+                    let c = splat(simd, row);
+                    for ((register, w), response) in (number * block..).zip(moved).zip(&mut responses) {
+                        *response = felt.responses(simd, register, limits(register), dot(simd, &c, w));
+                    }
+                    sums.add(simd, &responses, moved, |w| *w);
                 }
+            }
+            for (lane, sums) in sums.iter().enumerate() {
                 for a in 0..K {
                     regressions.products[a][lane] = simd.reduce_sum_f64s(sums.products[a]);
                     for b in 0..=a {
@@ -250,27 +211,27 @@ impl<const K: usize> WithSimd for UpdateLoadings<'_, K> {
     }
 }
 
-/// [`Als::residual`], summed over samples.
-struct Residual<'a> {
+/// [`Als::residual`] for k = K, summed over samples.
+struct Residual<'a, const K: usize> {
     als: &'a Als<'a>,
     loadings: &'a [f64],
     motion: &'a Mat<f64>,
 }
 
-impl WithSimd for Residual<'_> {
+impl<const K: usize> WithSimd for Residual<'_, K> {
     type Output = [f64; 2];
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> [f64; 2] {
         let Self { als, loadings, motion } = self;
-        let (samples, k) = (motion.nrows(), motion.ncols());
-        let none = simd.splat_f64s(0.0);
-        let rank = simd.splat_f64s(k as f64);
+        let (felt, limits) = (als.felt(simd), als.limits(simd));
+        let (none, rank) = (simd.splat_f64s(0.0), simd.splat_f64s(K as f64));
         let [mut residuals, mut freedoms] = [none; 2];
-        for t in (0..samples).step_by(S::F64_LANES) {
+        for (register, w) in motion_of::<S, K>(simd, motion).iter().enumerate() {
+            let limits = limits(register);
             let [mut residual, mut informative] = [none; 2];
-            for (sensor, c) in loadings.chunks(k.max(1)).enumerate() {
-                let (error, weight) = als.error(simd, sensor, t, c, motion);
+            for (felt, c) in felt.iter().zip(loadings.as_chunks::<K>().0) {
+                let (error, weight) = error(simd, felt, register, limits, dot(simd, &splat(simd, c), w));
                 residual = simd.mul_add_f64s(error, error, residual);
                 informative = simd.add_f64s(informative, weight);
             }
@@ -281,25 +242,27 @@ impl WithSimd for Residual<'_> {
     }
 }
 
-/// [`Als::residuals`].
-struct Residuals<'a> {
+/// [`Als::residuals`] for k = K.
+struct Residuals<'a, const K: usize> {
     als: &'a Als<'a>,
     loadings: &'a [f64],
     motion: &'a Mat<f64>,
 }
 
-impl WithSimd for Residuals<'_> {
+impl<const K: usize> WithSimd for Residuals<'_, K> {
     type Output = Vec<[f64; 2]>;
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> Vec<[f64; 2]> {
         let Self { als, loadings, motion } = self;
+        let (felt, limits, moved) = (als.felt(simd), als.limits(simd), motion_of::<S, K>(simd, motion));
         let none = simd.splat_f64s(0.0);
-        let mut found = Vec::with_capacity(als.values.len());
-        for (sensor, c) in loadings.chunks(motion.ncols().max(1)).enumerate() {
+        let mut found = Vec::with_capacity(felt.len());
+        for (felt, c) in felt.iter().zip(loadings.as_chunks::<K>().0) {
+            let c = splat(simd, c);
             let [mut residual, mut informative] = [none; 2];
-            for t in (0..motion.nrows()).step_by(S::F64_LANES) {
-                let (error, weight) = als.error(simd, sensor, t, c, motion);
+            for (register, w) in moved.iter().enumerate() {
+                let (error, weight) = error(simd, felt, register, limits(register), dot(simd, &c, w));
                 residual = simd.mul_add_f64s(error, error, residual);
                 informative = simd.add_f64s(informative, weight);
             }
@@ -309,20 +272,73 @@ impl WithSimd for Residuals<'_> {
     }
 }
 
+/// [`Als::complete`] for k = K.
+struct Complete<'a, const K: usize> {
+    als: &'a Als<'a>,
+    loadings: &'a [f64],
+    motion: &'a Mat<f64>,
+    roots: &'a mut Mat<f64>,
+}
+
+impl<const K: usize> WithSimd for Complete<'_, K> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Self { als, loadings, motion, roots } = self;
+        let (felt, limits, moved) = (als.felt(simd), als.limits(simd), motion_of::<S, K>(simd, motion));
+        for (sensor, (felt, c)) in felt.iter().zip(loadings.as_chunks::<K>().0).enumerate() {
+            let c = splat(simd, c);
+            let (whole, last) = S::as_mut_simd_f64s(roots.col_as_slice_mut(sensor));
+            for (register, w) in moved.iter().enumerate() {
+                let (threshold, predicted) = (limits(register)[0], dot(simd, &c, w));
+                match whole.get_mut(register) {
+                    Some(own) => *own = felt.completed(simd, register, threshold, [predicted, *own]),
+                    None => {
+                        let own = simd.partial_load_f64s(last);
+                        let all = felt.completed(simd, register, threshold, [predicted, own]);
+                        simd.partial_store_f64s(last, all);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// The errors of the informative ones of some roots, 0 for others, and their weights.
+#[inline(always)]
+fn error<S: Simd>(
+    simd: S,
+    felt: &Felt<'_, S>,
+    register: usize,
+    limits: [S::f64s; 2],
+    predicted: S::f64s,
+) -> (S::f64s, S::f64s) {
+    let Responses { weight, product } = felt.responses(simd, register, limits, predicted);
+    (simd.sub_f64s(product, simd.mul_f64s(weight, predicted)), weight)
+}
+
+#[inline(always)]
+fn no_responses<S: Simd>(simd: S, count: usize) -> Vec<Responses<S>> {
+    let none = simd.splat_f64s(0.0);
+    vec![Responses { weight: none, product: none }; count]
+}
+
 /// c of each sensor, one after the other.
 fn by_row(loadings: MatRef<'_, f64>) -> Vec<f64> {
     let k = loadings.ncols();
     (0..loadings.nrows()).flat_map(|sensor| (0..k).map(move |at| loadings[(sensor, at)])).collect()
 }
 
-/// w at samples from `t` on, as many as a register holds.
+/// w as registers.
 #[inline(always)]
-fn motion_from<S: Simd, const K: usize>(simd: S, motion: &Mat<f64>, t: usize) -> [S::f64s; K] {
-    let mut w = [simd.splat_f64s(0.0); K];
-    for (at, w) in w.iter_mut().enumerate() {
-        *w = load(simd, motion.col_as_slice(at), t);
+fn motion_of<S: Simd, const K: usize>(simd: S, motion: &Mat<f64>) -> Vec<[S::f64s; K]> {
+    let mut all = vec![[simd.splat_f64s(0.0); K]; motion.nrows().div_ceil(S::F64_LANES)];
+    for a in 0..K {
+        let series = Series::<S>::new(simd, motion.col_as_slice(a));
+        all.iter_mut().enumerate().for_each(|(register, w)| w[a] = series.at(register));
     }
-    w
+    all
 }
 
 /// Each number in all lanes of a register. By a loop, for `map` is not inlined.
@@ -343,16 +359,6 @@ fn dot<S: Simd, const K: usize>(simd: S, c: &[S::f64s; K], w: &[S::f64s; K]) -> 
         sum = simd.mul_add_f64s(c[at], w[at], sum);
     }
     sum
-}
-
-/// Numbers from an index on, as many as a register holds; 0 after the last.
-#[inline(always)]
-fn load<S: Simd>(simd: S, numbers: &[f64], from: usize) -> S::f64s {
-    let rest = &numbers[from..];
-    match S::as_simd_f64s(rest).0.first() {
-        Some(whole) => *whole,
-        None => simd.partial_load_f64s(rest),
-    }
 }
 
 /// Stores numbers from an index on.

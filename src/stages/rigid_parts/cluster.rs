@@ -288,7 +288,7 @@ impl Cluster {
             });
             last = next;
             als.update_motion(loadings.as_ref(), motion);
-            fill_in(completed, &own, loadings, motion);
+            plain.complete(loadings.as_ref(), motion, completed);
         }
         let [residual, freedom] = plain.residual(loadings.as_ref(), motion);
         let whitened = whitened(loadings, motion);
@@ -312,21 +312,6 @@ impl Cluster {
 /// The residual variance of a sum of squares of so many roots; of one more, so that there is a variance of none.
 fn per_root([sum, count]: [f64; 2]) -> f64 {
     sum / (count + 1.0)
-}
-
-/// Replaces what completes roots by the velocity that is predicted, which is no more than the root; any, where this is missing.
-fn fill_in(completed: &mut Mat<f64>, roots: &Roots, loadings: &Mat<f64>, motion: &Mat<f64>) {
-    let predicted = product(motion.as_ref(), loadings.transpose());
-    for sensor in 0..completed.ncols() {
-        let both = predicted.col_as_slice(sensor).iter().zip(roots.values.col_as_slice(sensor));
-        for ((completed, (predicted, root)), least) in
-            completed.col_as_slice_mut(sensor).iter_mut().zip(both).zip(&roots.thresholds)
-        {
-            if root < least || root.is_nan() {
-                *completed = predicted.min(*root);
-            }
-        }
-    }
 }
 
 /// What a root that is not felt tells of w, as a share of what one tells that is felt: all where the tolerance is the least or lower,

@@ -78,3 +78,50 @@ fn an_update_solves_the_plain_sums_at_any_number_of_samples() {
         }
     }
 }
+
+#[test]
+fn what_is_not_felt_is_completed_by_what_is_predicted_and_no_more_than_the_root() {
+    for samples in [1, 31, 33] {
+        for k in 1..=6 {
+            let (mut values, thresholds, loadings, motion) = example(samples, k, false);
+            values[(0, 0)] = f64::NAN;
+            let before = Mat::from_fn(samples, 9, |t, sensor| 7.0 + (t + sensor) as f64);
+            let mut completed = before.clone();
+            Als::new(values.as_ref(), &thresholds).complete(loadings.as_ref(), &motion, &mut completed);
+            for t in 0..samples {
+                for sensor in 0..9 {
+                    let root = values[(t, sensor)];
+                    let predicted: f64 = (0..k).map(|a| loadings[(sensor, a)] * motion[(t, a)]).sum();
+                    let expected =
+                        if root >= thresholds[t] { before[(t, sensor)] } else { predicted.min(root) };
+                    assert!((completed[(t, sensor)] - expected).abs() < 1e-12, "{samples} {k} {t} {sensor}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_root_that_is_not_informative_counts_as_the_completed_one_with_its_weight() {
+    const WEIGHT: f64 = 0.1;
+    let (values, thresholds, loadings, motion) = example(33, 2, false);
+    let completed = Mat::from_fn(33, 9, |t, sensor| -((t * sensor) as f64).sin().abs());
+    let als = Als::new(values.as_ref(), &thresholds).with_completed(completed.as_ref(), WEIGHT);
+    let mut found = loadings.clone();
+    als.update_loadings(found.as_mut(), &motion);
+    for sensor in 0..9 {
+        let mut gradient = [0.0; 2];
+        for t in 0..33 {
+            let product = |c: &Mat<f64>| (0..2).map(|a| c[(sensor, a)] * motion[(t, a)]).sum::<f64>();
+            let root = values[(t, sensor)];
+            let (weight, response) = if root >= thresholds[t] || product(&loadings) > root {
+                (1.0, root)
+            } else {
+                (WEIGHT, completed[(t, sensor)])
+            };
+            (0..2).for_each(|a| gradient[a] += weight * (response - product(&found)) * motion[(t, a)]);
+        }
+        // The ridge takes a little.
+        assert!(gradient.iter().all(|slope| slope.abs() < 1e-5), "{sensor}: {gradient:?}");
+    }
+}
