@@ -83,9 +83,11 @@ def of_recordings():
     moved = read(SHOWN / "recordings" / "recordings.csv")
     held_out = [row for row in moved if row["use"] == "held out"]
     most, seed = max(int(row["samples"]) for row in held_out), design("recordings")["seed"]
+    doubtful = sum(row["fit"] == "doubtful" for row in held_out)
+    called = "all" if doubtful == len(held_out) else doubtful
     found = [
         f"Held-out [recorded movements](docs/own-data.md#recorded-movements), at most {most} samples: trees right in",
-        f"{trees_right(held_out)}. Seed {seed}; `reproduce/recordings.py`, {revisions(held_out)}.",
+        f"{trees_right(held_out)}. Doubtful: {called}. Seed {seed}; `reproduce/recordings.py` of revision {revisions(held_out)}.",
     ]
     return {("README.md", "recorded"): found, ("docs/own-data.md", "recorded"): recorded(moved)}
 
@@ -116,7 +118,7 @@ def of_robots():
     return {
         ("README.md", "robots"): [
             f"Held-out [robots](docs/own-data.md#known-failures), 100,000 samples: trees right in {trees_right(held_out)}.",
-            f"Seed {ran[0]['seed']}; `reproduce/robots.py`, {revisions(held_out)}.",
+            f"Seed {ran[0]['seed']}; `reproduce/robots.py` of revision {revisions(held_out)}.",
         ],
         ("docs/own-data.md", "robots"): lines,
     }

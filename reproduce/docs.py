@@ -191,7 +191,6 @@ def answers():
     lines += ["", " ".join(sources(runs))]
     between_marks(ROOT / "docs" / "results.md", "claims", "\n".join(lines))
 
-
     conclusion = SHOWN / "confirm" / "confirmation.md"
     text = conclusion.read_text().strip() if conclusion.exists() else "The confirmation has not run yet."
     between_marks(ROOT / "docs" / "results.md", "confirmation", text)
@@ -210,7 +209,7 @@ def answers():
         curves.append("")
     between_marks(ROOT / "docs" / "results.md", "findings", "\n".join(curves).strip() + "\n")
     between_marks(ROOT / "README.md", "simulations", (
-        f"- **Single simulations** have tree accuracies of [{ranges['d', '14']}](docs/results.md#what-stands-out); the paper seems to show one."
+        f"- **Single simulations** range from [{ranges['d', '14']}](docs/results.md#what-stands-out); the paper seems to show one."
     ))
 
 
