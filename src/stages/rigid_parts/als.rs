@@ -6,7 +6,7 @@
 use faer::{Mat, MatMut, MatRef};
 use pulp::{Arch, Simd, WithSimd};
 
-use self::series::{Felt, Series};
+use self::series::{Sensor, Series};
 use self::sums::{Responses, Sums};
 use super::regressions::{LANES, Regressions};
 use crate::numerics::interrupt;
@@ -17,7 +17,7 @@ mod sums;
 /// Samples whose motion stays in the fastest memory while it is summed for one sensor after the other.
 const BLOCK: usize = 256;
 
-/// Runs work that is compiled for each rank of a motion subspace; nothing, for a rank of 0.
+/// Runs work that is compiled for each rank of a motion subspace. At rank 0, gives the default value.
 macro_rules! with_rank {
     ($rank:expr, $work:ident { $($field:ident: $value:expr),* }) => {
         match $rank {
@@ -89,7 +89,7 @@ impl<'a> Als<'a> {
         with_rank!(motion.ncols(), Residuals { als: self, loadings: &by_row(loadings), motion: motion })
     }
 
-    /// Replaces roots that are not felt by what is predicted, which is no more than the root; any, where this is missing.
+    /// Replaces roots that are not felt by what is predicted, but by no more than the root. A missing root is replaced by any prediction.
     ///
     /// In: c, sensors × k; w, samples × k. In and out: roots, samples × sensors.
     pub(super) fn complete(&self, loadings: MatRef<'_, f64>, motion: &Mat<f64>, roots: &mut Mat<f64>) {
@@ -99,15 +99,17 @@ impl<'a> Als<'a> {
         );
     }
 
-    /// What each sensor felt.
+    /// What each sensor felt at so many samples, with c of as many sensors.
     #[inline(always)]
-    fn felt<S: Simd>(&self, simd: S) -> Vec<Felt<'_, S>> {
-        let series = |columns: &[&'a [f64]], sensor: usize| {
-            Series::new(simd, columns.get(sensor).copied().unwrap_or_default())
-        };
-        let felt =
-            |sensor| Felt { roots: series(&self.values, sensor), completed: series(&self.completed, sensor) };
-        (0..self.values.len()).map(felt).collect()
+    fn sensors<S: Simd>(&self, simd: S, loadings: usize, samples: usize) -> Vec<Sensor<'_, S>> {
+        assert_eq!(self.values.len(), loadings, "each sensor has a row of loadings");
+        let mut sensors = Vec::with_capacity(loadings);
+        for (at, roots) in self.values.iter().enumerate() {
+            assert_eq!(roots.len(), samples, "each sample has a motion");
+            let completed = self.completed.get(at).copied().unwrap_or_default();
+            sensors.push(Sensor { roots: Series::new(simd, roots), completed: Series::new(simd, completed) });
+        }
+        sensors
     }
 
     /// At each sample, the threshold; and the weight of a completed root.
@@ -115,6 +117,7 @@ impl<'a> Als<'a> {
     fn limits<S: Simd>(&self, simd: S) -> impl Fn(usize) -> [S::f64s; 2] {
         // Infinite after the last sample, where motion and roots are 0: nothing is added there.
         let (thresholds, weight) = (Series::<S>::new(simd, &self.thresholds), simd.splat_f64s(self.weight));
+        #[inline(always)]
         move |register| [thresholds.at(register), weight]
     }
 }
@@ -138,7 +141,8 @@ impl<const K: usize> WithSimd for UpdateMotion<'_, K> {
     fn with_simd<S: Simd>(self, simd: S) {
         let Self { als, loadings, motion } = self;
         let (samples, rows) = (motion.nrows(), loadings.as_chunks::<K>().0);
-        let (felt, limits, moved) = (als.felt(simd), als.limits(simd), motion_of::<S, K>(simd, motion));
+        let (sensors, limits) = (als.sensors(simd, rows.len(), samples), als.limits(simd));
+        let moved = motion_of::<S, K>(simd, motion);
         let mut responses = no_responses(simd, rows.len());
         for first in (0..samples).step_by(LANES) {
             let count = LANES.min(samples - first);
@@ -146,11 +150,17 @@ impl<const K: usize> WithSimd for UpdateMotion<'_, K> {
             for at in (0..count).step_by(S::F64_LANES) {
                 let register = (first + at) / S::F64_LANES;
                 let (limits, w) = (limits(register), &moved[register]);
-                for ((felt, c), response) in felt.iter().zip(rows).zip(&mut responses) {
-                    *response = felt.responses(simd, register, limits, dot(simd, &splat(simd, c), w));
+                for ((sensor, c), response) in sensors.iter().zip(rows).zip(&mut responses) {
+                    *response = sensor.responses(simd, register, limits, dot(simd, &splat(simd, c), w));
                 }
                 let mut sums = Sums::<S, K>::new(simd);
-                sums.add(simd, &responses, rows, |c| simd.splat_f64s(*c));
+                sums.add(
+                    simd,
+                    &responses,
+                    rows,
+                    #[inline(always)]
+                    |c| simd.splat_f64s(*c),
+                );
                 for a in 0..K {
                     store::<S>(&mut regressions.products[a], at, sums.products[a]);
                     for b in 0..=a {
@@ -179,20 +189,27 @@ impl<const K: usize> WithSimd for UpdateLoadings<'_, K> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let Self { als, loadings, motion } = self;
-        let (felt, limits, moved) = (als.felt(simd), als.limits(simd), motion_of::<S, K>(simd, motion));
+        let rows = loadings.as_chunks_mut::<K>().0;
+        let (sensors, limits) = (als.sensors(simd, rows.len(), motion.nrows()), als.limits(simd));
+        let moved = motion_of::<S, K>(simd, motion);
         let block = BLOCK / S::F64_LANES;
         let mut responses = no_responses(simd, block);
-        let rows = loadings.as_chunks_mut::<K>().0;
-        for (felt, rows) in felt.chunks(LANES).zip(rows.chunks_mut(LANES)) {
+        for (sensors, rows) in sensors.chunks(LANES).zip(rows.chunks_mut(LANES)) {
             let mut regressions = Regressions::<K>::new();
-            let mut sums: Vec<Sums<S, K>> = rows.iter().map(|_| Sums::new(simd)).collect();
+            let mut sums = vec![Sums::<S, K>::new(simd); rows.len()];
             for (number, moved) in moved.chunks(block).enumerate() {
-                for ((felt, row), sums) in felt.iter().zip(&*rows).zip(&mut sums) {
+                for ((sensor, row), sums) in sensors.iter().zip(&*rows).zip(&mut sums) {
                     let c = splat(simd, row);
                     for ((register, w), response) in (number * block..).zip(moved).zip(&mut responses) {
-                        *response = felt.responses(simd, register, limits(register), dot(simd, &c, w));
+                        *response = sensor.responses(simd, register, limits(register), dot(simd, &c, w));
                     }
-                    sums.add(simd, &responses, moved, |w| *w);
+                    sums.add(
+                        simd,
+                        &responses[..moved.len()],
+                        moved,
+                        #[inline(always)]
+                        |w| *w,
+                    );
                 }
             }
             for (lane, sums) in sums.iter().enumerate() {
@@ -224,14 +241,15 @@ impl<const K: usize> WithSimd for Residual<'_, K> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> [f64; 2] {
         let Self { als, loadings, motion } = self;
-        let (felt, limits) = (als.felt(simd), als.limits(simd));
+        let rows = loadings.as_chunks::<K>().0;
+        let (sensors, limits) = (als.sensors(simd, rows.len(), motion.nrows()), als.limits(simd));
         let (none, rank) = (simd.splat_f64s(0.0), simd.splat_f64s(K as f64));
         let [mut residuals, mut freedoms] = [none; 2];
         for (register, w) in motion_of::<S, K>(simd, motion).iter().enumerate() {
             let limits = limits(register);
             let [mut residual, mut informative] = [none; 2];
-            for (felt, c) in felt.iter().zip(loadings.as_chunks::<K>().0) {
-                let (error, weight) = error(simd, felt, register, limits, dot(simd, &splat(simd, c), w));
+            for (sensor, c) in sensors.iter().zip(rows) {
+                let (error, weight) = error(simd, sensor, register, limits, dot(simd, &splat(simd, c), w));
                 residual = simd.mul_add_f64s(error, error, residual);
                 informative = simd.add_f64s(informative, weight);
             }
@@ -255,14 +273,16 @@ impl<const K: usize> WithSimd for Residuals<'_, K> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> Vec<[f64; 2]> {
         let Self { als, loadings, motion } = self;
-        let (felt, limits, moved) = (als.felt(simd), als.limits(simd), motion_of::<S, K>(simd, motion));
+        let rows = loadings.as_chunks::<K>().0;
+        let (sensors, limits) = (als.sensors(simd, rows.len(), motion.nrows()), als.limits(simd));
+        let moved = motion_of::<S, K>(simd, motion);
         let none = simd.splat_f64s(0.0);
-        let mut found = Vec::with_capacity(felt.len());
-        for (felt, c) in felt.iter().zip(loadings.as_chunks::<K>().0) {
+        let mut found = Vec::with_capacity(sensors.len());
+        for (sensor, c) in sensors.iter().zip(rows) {
             let c = splat(simd, c);
             let [mut residual, mut informative] = [none; 2];
             for (register, w) in moved.iter().enumerate() {
-                let (error, weight) = error(simd, felt, register, limits(register), dot(simd, &c, w));
+                let (error, weight) = error(simd, sensor, register, limits(register), dot(simd, &c, w));
                 residual = simd.mul_add_f64s(error, error, residual);
                 informative = simd.add_f64s(informative, weight);
             }
@@ -286,17 +306,19 @@ impl<const K: usize> WithSimd for Complete<'_, K> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let Self { als, loadings, motion, roots } = self;
-        let (felt, limits, moved) = (als.felt(simd), als.limits(simd), motion_of::<S, K>(simd, motion));
-        for (sensor, (felt, c)) in felt.iter().zip(loadings.as_chunks::<K>().0).enumerate() {
+        let rows = loadings.as_chunks::<K>().0;
+        let (sensors, limits) = (als.sensors(simd, rows.len(), motion.nrows()), als.limits(simd));
+        let moved = motion_of::<S, K>(simd, motion);
+        for (at, (sensor, c)) in sensors.iter().zip(rows).enumerate() {
             let c = splat(simd, c);
-            let (whole, last) = S::as_mut_simd_f64s(roots.col_as_slice_mut(sensor));
+            let (whole, last) = S::as_mut_simd_f64s(roots.col_as_slice_mut(at));
             for (register, w) in moved.iter().enumerate() {
                 let (threshold, predicted) = (limits(register)[0], dot(simd, &c, w));
                 match whole.get_mut(register) {
-                    Some(own) => *own = felt.completed(simd, register, threshold, [predicted, *own]),
+                    Some(own) => *own = sensor.completed(simd, register, threshold, [predicted, *own]),
                     None => {
                         let own = simd.partial_load_f64s(last);
-                        let all = felt.completed(simd, register, threshold, [predicted, own]);
+                        let all = sensor.completed(simd, register, threshold, [predicted, own]);
                         simd.partial_store_f64s(last, all);
                     }
                 }
@@ -309,12 +331,12 @@ impl<const K: usize> WithSimd for Complete<'_, K> {
 #[inline(always)]
 fn error<S: Simd>(
     simd: S,
-    felt: &Felt<'_, S>,
+    sensor: &Sensor<'_, S>,
     register: usize,
     limits: [S::f64s; 2],
     predicted: S::f64s,
 ) -> (S::f64s, S::f64s) {
-    let Responses { weight, product } = felt.responses(simd, register, limits, predicted);
+    let Responses { weight, product } = sensor.responses(simd, register, limits, predicted);
     (simd.sub_f64s(product, simd.mul_f64s(weight, predicted)), weight)
 }
 
@@ -336,7 +358,9 @@ fn motion_of<S: Simd, const K: usize>(simd: S, motion: &Mat<f64>) -> Vec<[S::f64
     let mut all = vec![[simd.splat_f64s(0.0); K]; motion.nrows().div_ceil(S::F64_LANES)];
     for a in 0..K {
         let series = Series::<S>::new(simd, motion.col_as_slice(a));
-        all.iter_mut().enumerate().for_each(|(register, w)| w[a] = series.at(register));
+        for (register, w) in all.iter_mut().enumerate() {
+            w[a] = series.at(register);
+        }
     }
     all
 }

@@ -23,14 +23,14 @@ impl<'a, S: Simd> Series<'a, S> {
     }
 }
 
-/// What a sensor felt, and what its roots are taken for that are not informative.
-pub(super) struct Felt<'a, S: Simd> {
+/// The roots of a sensor, and what those are taken for that are not informative.
+pub(super) struct Sensor<'a, S: Simd> {
     pub roots: Series<'a, S>,
-    /// 0 if nothing completes them.
+    /// Empty if nothing completes them, which reads as 0.
     pub completed: Series<'a, S>,
 }
 
-impl<S: Simd> Felt<'_, S> {
+impl<S: Simd> Sensor<'_, S> {
     /// What completes roots that are not felt: what is predicted, but no more than the root. Others keep what they have.
     #[inline(always)]
     pub(super) fn completed(
@@ -46,8 +46,8 @@ impl<S: Simd> Felt<'_, S> {
         simd.select_f64s(is_felt, own, simd.select_f64s(is_bound, root, predicted))
     }
 
-    /// Roots of which c · w predicts this, as responses: informative ones, which are felt from a threshold on, and others with their
-    /// weight.
+    /// The responses of roots that c · w predicts so, and that are felt from a threshold on. Informative ones have a weight of 1, and
+    /// others are the completed ones with their weight.
     #[inline(always)]
     pub(super) fn responses(
         &self,

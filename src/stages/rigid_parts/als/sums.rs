@@ -1,4 +1,4 @@
-//! Sum the products of many regressions at once, one regression a lane of a register.
+//! Sum the products of regressions in the lanes of registers: each lane sums observations of its own.
 
 use pulp::Simd;
 
@@ -10,7 +10,8 @@ pub(super) struct Responses<S: Simd> {
     pub product: S::f64s,
 }
 
-/// The sums of as many regressions on K regressors as a register holds.
+/// The sums of regressions on K regressors, or shares of the sums of one, in each lane.
+#[derive(Clone, Copy)]
 pub(super) struct Sums<S: Simd, const K: usize> {
     /// Of products of two regressors, the second not after the first.
     pub squares: [[S::f64s; K]; K],
@@ -34,14 +35,14 @@ impl<S: Simd, const K: usize> Sums<S, K> {
         regressors: &[[X; K]],
         load: impl Fn(&X) -> S::f64s,
     ) {
-        // All rows of a triangle of K = 6 at once need more registers than most processors have, and three do two at a time.
+        // All rows of a triangle of K = 6 at once need more registers than most processors have. Each of three passes adds two rows.
         const { assert!(K <= 6) };
         self.add_rows::<X, 0>(simd, responses, regressors, &load);
         self.add_rows::<X, 1>(simd, responses, regressors, &load);
         self.add_rows::<X, 2>(simd, responses, regressors, &load);
     }
 
-    /// Adds to row A of the triangle, and to the row that is as far from the last: K + 1 sums together, whatever A is.
+    /// Adds to row A of the triangle, and to the row that is as far from the last. Two rows have K + 1 sums together, whatever A is.
     #[inline(always)]
     fn add_rows<X, const A: usize>(
         &mut self,
@@ -57,7 +58,7 @@ impl<S: Simd, const K: usize> Sums<S, K> {
         let (mut low, mut high) = (self.squares[A], self.squares[z]);
         let [mut of_low, mut of_high] = [self.products[A], self.products[z]];
         for (response, regressors) in responses.iter().zip(regressors) {
-            let mut x = [response.weight; K];
+            let mut x = [simd.splat_f64s(0.0); K];
             for b in 0..=z {
                 x[b] = load(&regressors[b]);
             }

@@ -27,7 +27,9 @@ fn add(sums: &mut (Mat<f64>, Mat<f64>), x: &[f64], is_informative: bool, root: f
 
 #[test]
 fn an_update_solves_the_plain_sums_at_any_number_of_samples() {
-    for (samples, signed) in [(1, false), (31, false), (33, true), (37, false), (70, true)] {
+    for (samples, signed) in
+        [(1, false), (31, false), (33, true), (37, false), (70, true), (257, false), (519, true)]
+    {
         for k in 1..=6 {
             let (values, thresholds, loadings, motion) = example(samples, k, signed);
             let als = Als::new(values.as_ref(), &thresholds);
@@ -81,7 +83,7 @@ fn an_update_solves_the_plain_sums_at_any_number_of_samples() {
 
 #[test]
 fn what_is_not_felt_is_completed_by_what_is_predicted_and_no_more_than_the_root() {
-    for samples in [1, 31, 33] {
+    for samples in [1, 31, 33, 257] {
         for k in 1..=6 {
             let (mut values, thresholds, loadings, motion) = example(samples, k, false);
             values[(0, 0)] = f64::NAN;
