@@ -21,25 +21,36 @@ def tables():
 def summary():
     """What was held out, a row for each kind of data."""
     bodies, gaits = (read(SHOWN / folder / "recordings.csv") for folder in ("bodies", "rhythmic"))
-    held_out = lambda rows: [row for row in rows if row["use"] == "held out"]
-    recordings, robots = (held_out(read(SHOWN / name / f"{name}.csv")) for name in ("recordings", "robots"))
-    robots, boxes = [row for row in robots if row["movement"] == "p = 0.5" and not row["refused"]], read(SHOWN / "boxes" / "boxes.csv")
+    recordings, robots, boxes = of_use("held out", shown("recordings")), of_use("held out", moved_robots()), shown("boxes")
     changing = [row for row in gaits if row["kind"] == "changing-gaits"]
     counts = [int(row["samples"]) for row in recordings]
     of_study, of_gaits = (run_of(folder)["revision"][:7] for folder in ("bodies", "rhythmic"))
-    of_boxes = boxes[0]["revision"][:7]
     rows = [
         ("[15 bodies](shown/bodies/README.md), random movement", "100,000", of(bodies, 100_000, 0.0), of_study),
         ("the same, noise of 10 % of the root mean square", "100,000", of(bodies, 100_000, 0.1), of_study),
         ("the same bodies swim in [gaits that change](estimate.md#rhythmic-movement)", "10,000", changing, of_gaits),
         ("[movements of people](#recorded-movements), recorded by others", f"{min(counts)} to {max(counts)}", recordings, revisions(recordings)),
-        ("[robots of boxes](shown/boxes/README.md), random movement", "20,000", boxes, of_boxes),
+        ("[robots of boxes](shown/boxes/README.md), random movement", "20,000", boxes, revisions(boxes)),
         ("[robots as published](shown/robots/README.md), random movement", "100,000", robots, revisions(robots)),
     ]
     lines = ["| data | samples | tree right | revision |", "|---|---|---|---|"]
     for name, samples, own, revision in rows:
         lines.append(f"| {name} | {samples} | {trees_right(own)} | {revision} |")
     return {("docs/own-data.md", "summary"): lines}
+
+
+def shown(name):
+    """The rows of a table in docs/shown."""
+    return read(SHOWN / name / f"{name}.csv")
+
+
+def of_use(use, rows):
+    return [row for row in rows if row["use"] == use]
+
+
+def moved_robots():
+    """Robots that were not refused, in the movement that is reported."""
+    return [row for row in shown("robots") if row["movement"] == "p = 0.5" and not row["refused"]]
 
 
 def run_of(folder):
@@ -80,8 +91,8 @@ def made(folder, command):
 
 
 def of_recordings():
-    moved = read(SHOWN / "recordings" / "recordings.csv")
-    held_out = [row for row in moved if row["use"] == "held out"]
+    moved = shown("recordings")
+    held_out = of_use("held out", moved)
     most, seed = max(int(row["samples"]) for row in held_out), design("recordings")["seed"]
     doubtful = sum(row["fit"] == "doubtful" for row in held_out)
     called = "all" if doubtful == len(held_out) else doubtful
@@ -98,9 +109,8 @@ def design(name):
 
 
 def of_robots():
-    ran = [row for row in read(SHOWN / "robots" / "robots.csv") if row["movement"] == "p = 0.5" and not row["refused"]]
-    held_out, seen = ([row for row in ran if row["use"] == use] for use in ("held out", "calibration"))
-    boxes = read(SHOWN / "boxes" / "boxes.csv")
+    ran, boxes = moved_robots(), shown("boxes")
+    held_out, seen = (of_use(use, ran) for use in USES)
     counted = sum(row["parts"] == row["true_parts"] for row in boxes)
     made_by = lambda revision, script: f"revision {revision}; `reproduce/{script}`"
     wrong = [row for row in ran if row["tree_right"] != "true"]
@@ -113,7 +123,7 @@ def of_robots():
         f"- **Robots of boxes.** At p = 0.5 and 20,000 samples, the tree was right for {trees_right(boxes)}, which were drawn at random.",
         f"  The number of parts was right for {interval(counted, len(boxes))} ([page](shown/boxes/README.md)). Sides along a hinge have the same",
         "  velocity along it on both of its parts, and can be taken for one part. Parts whose hinges are parallel can be taken for joined.",
-        f"  Seeds {boxes[0]['body']} to {boxes[-1]['body']}; {made_by(boxes[0]['revision'][:7], 'boxes.py')}.",
+        f"  Seeds {boxes[0]['body']} to {boxes[-1]['body']}; {made_by(revisions(boxes), 'boxes.py')}.",
     ]
     return {
         ("README.md", "robots"): [
@@ -190,7 +200,7 @@ def recorded(moved):
     lines = ["| recordings | samples | mean adjusted Rand index | tree right | revision |", "|---|---|---|---|---|"]
     for use in USES:
         for name, is_long in [("fewer than 1,000 samples", False), ("1,000 samples or more", True)]:
-            own = [row for row in moved if row["use"] == use and (int(row["samples"]) >= 1000) == is_long]
+            own = [row for row in of_use(use, moved) if (int(row["samples"]) >= 1000) == is_long]
             if own:
                 counts = [int(row["samples"]) for row in own]
                 mean = sum(float(row["ari"]) for row in own) / len(own)

@@ -13,7 +13,7 @@ import random
 import sys
 import tempfile
 
-from estimated import ROOT, TRUTH, estimated, interval, outcome, resumed, revision, run, trees_right
+from estimated import ROOT, TRUTH, estimated, interval, outcome, resumed, revision, revisions, run, trees_right
 
 SENSORS, DURATION = 40, 2000  # of each part; s
 SETTINGS = "physics.step = 0.02\nmotion.epoch = 250\nmotion.coordination = 0.5\n"
@@ -101,7 +101,7 @@ def page(rows):
         "How often does `bodyschema estimate` find the tree of a robot that nobody chose? Bodies are drawn as robots are often made: five to",
         "ten parts, mostly boxes, joined mostly by hinges along their edges. Cylinders of the [study of bodies](../bodies/README.md) are",
         f"easier. Each part has {SENSORS} virtual sensors, without noise, and p is 0.5. A movement has {10 * DURATION:,} samples of 0.1 s. Made by",
-        f"`reproduce/boxes.py` with revision {rows[0]['revision'][:7]} and seeds {first} to {last}, each of a body and its movement.",
+        f"`reproduce/boxes.py` with revision {revisions(rows)} and seeds {first} to {last}, each of a body and its movement.",
         "",
         f"The tree was right in {trees_right(rows)}, and the number of parts in {interval(parts, len(rows))}",
         f"(95 % intervals, Wilson). The adjusted Rand index was {mean:.3f} on average.",

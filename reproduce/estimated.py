@@ -56,7 +56,7 @@ def revision():
 
 def revisions(rows):
     """The revision that rows were counted with; if it is not one, that of the rows of each use."""
-    of = {use: sorted({row["revision"][:7] for row in rows if row["use"] == use}) for use in USES}
+    of = {use: sorted({row["revision"][:7] for row in rows if row.get("use") == use}) for use in [*USES, None]}
     counted = {use: " and ".join(own) for use, own in of.items() if own}
     if len(set(counted.values())) == 1:
         return next(iter(counted.values()))
