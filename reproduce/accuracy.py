@@ -95,10 +95,10 @@ def of_recordings():
     held_out = of_use("held out", moved)
     most, seed = max(int(row["samples"]) for row in held_out), design("recordings")["seed"]
     doubtful = sum(row["fit"] == "doubtful" for row in held_out)
-    called = "all" if doubtful == len(held_out) else doubtful
+    which = "All" if doubtful == len(held_out) else doubtful
     found = [
         f"Held-out [recorded movements](docs/own-data.md#recorded-movements), at most {most} samples: trees right in",
-        f"{trees_right(held_out)}. Doubtful: {called}. Seed {seed}; `reproduce/recordings.py` of revision {revisions(held_out)}.",
+        f"{trees_right(held_out)}. {which} fits are doubtful. Seed {seed}; `reproduce/recordings.py` of revision {revisions(held_out)}.",
     ]
     return {("README.md", "recorded"): found, ("docs/own-data.md", "recorded"): recorded(moved)}
 
@@ -116,8 +116,8 @@ def of_robots():
     wrong = [row for row in ran if row["tree_right"] != "true"]
     surplus = sum(row["joints_right"] == row["true_joints"] and int(row["parts"]) > int(row["true_parts"]) for row in wrong)
     lines = [
-        f"- **Public robots.** At p = 0.5 and 100,000 samples, the tree was right for {trees_right(held_out)} robots that were held out. Of those",
-        f"  that the method was developed on, it was {trees_right(seen)}. Trees count here also where the fit is not good",
+        f"- **Public robots.** At p = 0.5 and 100,000 samples, trees of held-out robots were right in {trees_right(held_out)}. Of those",
+        f"  that the method was developed on, they were in {trees_right(seen)}. Trees count here also where the fit is not good",
         f"  (`--force`). Of all {len(ran)}, {len(wrong)} trees are wrong; in {surplus} of these the only fault is a surplus part.",
         f"  [Which ones and why](shown/robots/README.md): seed {ran[0]['seed']}; {made_by(revisions(ran), 'robots.py')}.",
         f"- **Robots of boxes.** At p = 0.5 and 20,000 samples, the tree was right for {trees_right(boxes)}, which were drawn at random.",

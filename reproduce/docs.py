@@ -209,7 +209,7 @@ def answers():
         curves.append("")
     between_marks(ROOT / "docs" / "results.md", "findings", "\n".join(curves).strip() + "\n")
     between_marks(ROOT / "README.md", "simulations", (
-        f"- **Single simulations** range from [{ranges['d', '14']}](docs/results.md#what-stands-out); the paper seems to show one."
+        f"- **Single simulations** have tree accuracies of [{ranges['d', '14']}](docs/results.md#what-stands-out); the paper seems to show one."
     ))
 
 
