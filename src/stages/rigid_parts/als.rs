@@ -249,7 +249,7 @@ impl<const K: usize> WithSimd for Residual<'_, K> {
             let limits = limits(register);
             let [mut residual, mut informative] = [none; 2];
             for (sensor, c) in sensors.iter().zip(rows) {
-                let (error, weight) = error(simd, sensor, register, limits, dot(simd, &splat(simd, c), w));
+                let (error, weight) = sensor.error(simd, register, limits, dot(simd, &splat(simd, c), w));
                 residual = simd.mul_add_f64s(error, error, residual);
                 informative = simd.add_f64s(informative, weight);
             }
@@ -282,7 +282,7 @@ impl<const K: usize> WithSimd for Residuals<'_, K> {
             let c = splat(simd, c);
             let [mut residual, mut informative] = [none; 2];
             for (register, w) in moved.iter().enumerate() {
-                let (error, weight) = error(simd, sensor, register, limits(register), dot(simd, &c, w));
+                let (error, weight) = sensor.error(simd, register, limits(register), dot(simd, &c, w));
                 residual = simd.mul_add_f64s(error, error, residual);
                 informative = simd.add_f64s(informative, weight);
             }
@@ -325,19 +325,6 @@ impl<const K: usize> WithSimd for Complete<'_, K> {
             }
         }
     }
-}
-
-/// The errors of the informative ones of some roots, 0 for others, and their weights.
-#[inline(always)]
-fn error<S: Simd>(
-    simd: S,
-    sensor: &Sensor<'_, S>,
-    register: usize,
-    limits: [S::f64s; 2],
-    predicted: S::f64s,
-) -> (S::f64s, S::f64s) {
-    let Responses { weight, product } = sensor.responses(simd, register, limits, predicted);
-    (simd.sub_f64s(product, simd.mul_f64s(weight, predicted)), weight)
 }
 
 #[inline(always)]

@@ -66,4 +66,17 @@ impl<S: Simd> Sensor<'_, S> {
             product: simd.select_f64s(is_informative, root, instead),
         }
     }
+
+    /// The errors of informative roots, 0 for others, and the weights of all. In: as for [`Sensor::responses`].
+    #[inline(always)]
+    pub(super) fn error(
+        &self,
+        simd: S,
+        register: usize,
+        limits: [S::f64s; 2],
+        predicted: S::f64s,
+    ) -> (S::f64s, S::f64s) {
+        let Responses { weight, product } = self.responses(simd, register, limits, predicted);
+        (simd.sub_f64s(product, simd.mul_f64s(weight, predicted)), weight)
+    }
 }
