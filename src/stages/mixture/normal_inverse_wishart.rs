@@ -45,7 +45,7 @@ impl NormalInverseWishart {
         degrees_of_freedom: f64,
     ) -> Option<Self> {
         let dims = mean.len();
-        assert!(mean_weight > 0.0 && degrees_of_freedom > dims as f64 - 1.0);
+        debug_assert!(mean_weight > 0.0 && degrees_of_freedom > dims as f64 - 1.0);
         let mean = mean.push(1.0);
         let mut moments = Augmented::zeros(dims);
         for i in 0..=dims {

@@ -305,6 +305,7 @@ impl World {
 
     /// Applies torques about the axes of a joint for the next step, N·m.
     pub(super) fn apply_torques(&mut self, joint: usize, torques: Vector3) {
+        debug_assert!(torques.iter().all(|torque| torque.is_finite()));
         self.joints[joint].apply_torques(torques);
     }
 
@@ -320,6 +321,7 @@ impl World {
 
     /// Sets the motors of a joint's axes: the velocity that each strives for, rad/s, and its largest torque, N·m.
     pub(super) fn set_motor(&mut self, joint: usize, velocities: Vector3, torque: f64) {
+        debug_assert!(velocities.iter().all(|velocity| velocity.is_finite()));
         self.joints[joint].set_motor(velocities, torque);
     }
 
