@@ -32,9 +32,11 @@ mod pieces;
 mod prepared;
 mod regressions;
 mod regrouping;
+mod rest;
 mod roots;
 mod search;
 mod separation;
+mod splits;
 mod stratified;
 mod subspace;
 #[cfg(test)]

@@ -7,12 +7,15 @@
 //! into flat faces (random sample consensus: Fischler and Bolles 1981, here with all triples of a few sensors). A part then grows from
 //! each face, as long as one motion explains it. The part that saves most is kept, and its faces are taken; and so on. The result counts
 //! if the description of all is shorter.
+//!
+//! Clusters may have taken the faces of a part so that what is left of it is in none. So groups of sensors in no cluster count as faces,
+//! too, and a sensor in none costs what it takes alone.
 
 use rayon::prelude::*;
 
 use super::cluster::Cluster;
 use super::face_growth::Faces;
-use super::search::{EXPLAINED, MIN_SAVING, Search, smallest};
+use super::search::{EXPLAINED, MIN_SAVING, SEED_SENSORS, Search, smallest};
 use super::stratified::stratified;
 
 /// What all sensors of a flat face feel: this many numbers.
@@ -25,11 +28,22 @@ const MIN_REST: usize = 2;
 const MAX_TRIED: usize = 20;
 
 impl Search {
-    /// The parts that grow from the faces of these clusters, if no fewer sensors are on them, and their description is shorter: by what a
-    /// merge must save, for each cluster.
+    /// The parts that grow from the faces of these clusters, and from groups of sensors that are in none, if the description of all sensors
+    /// is shorter: by what a merge must save, for each cluster.
     pub(super) fn regrouped(&mut self, clusters: &[Cluster]) -> Option<Vec<Cluster>> {
         let faces = |(at, own)| self.flat_faces(own).into_iter().map(move |face| (at, face));
-        let faces: Vec<(usize, Vec<usize>)> = clusters.par_iter().enumerate().flat_map_iter(faces).collect();
+        let mut faces: Vec<(usize, Vec<usize>)> =
+            clusters.par_iter().enumerate().flat_map_iter(faces).collect();
+        let every = self.every();
+        if self.rest_takes_part {
+            let mut rest = self.linked(&self.in_none(clusters), SEED_SENSORS[1]);
+            // Any cluster explains a few sensors, and the end of a thin cylinder.
+            let is_face = |own: &Vec<usize>| {
+                own.len() >= MIN_FACE && Cluster::new(&self.felt, own.clone()).rank() >= FACE_RANK
+            };
+            rest.retain(is_face);
+            faces.extend((clusters.len()..).zip(rest));
+        }
         let mut faces = Faces::new(self, faces);
         let contested = faces.contested();
         if contested.is_empty() {
@@ -39,24 +53,14 @@ impl Search {
         let stay = clusters.iter().enumerate().filter(|(at, _)| !contested.contains(at));
         let parts: Vec<Cluster> = stay.map(|(_, own)| own.clone()).chain(grown).collect();
         let before = self.felt.completed.clone();
-        let length = self.length_of(clusters);
+        let length = self.length_of(clusters, &every);
         parts.iter().for_each(|part| part.complete_roots(&mut self.felt));
-        let every: Vec<usize> = (0..self.felt.roots.sensors()).collect();
         let parts = self.assigned(parts, &every);
-        let covered = |of: &[Cluster]| of.iter().map(|own| own.sensors.len()).sum::<usize>();
-        let least = MIN_SAVING * clusters.len() as f64;
-        if covered(&parts) >= covered(clusters) && length - self.length_of(&parts) > least {
+        if length - self.length_of(&parts, &every) > MIN_SAVING * clusters.len() as f64 {
             return Some(parts);
         }
         self.felt.completed = before;
         None
-    }
-
-    /// Description length of some clusters together.
-    fn length_of(&self, clusters: &[Cluster]) -> f64 {
-        let lengths: Vec<f64> =
-            clusters.par_iter().map(|own| self.learned(own.sensors.clone()).description_length).collect();
-        lengths.iter().sum()
     }
 
     /// The flat faces that the sensors of a cluster are on, and those on none as one more group.

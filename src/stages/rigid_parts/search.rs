@@ -1,7 +1,6 @@
 //! Search for the parts: agglomerative merging of clusters by description length (Ma et al. 2007), and assigning sensors by
 //! residual (K-subspaces, Bradley and Mangasarian 2000), from small clusters of sensors of high affinity.
 
-use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet};
 
 use faer::Mat;
@@ -50,6 +49,9 @@ pub(super) struct Search {
     /// Whether the model has no error that counts, however fast parts move. There may be noise. A [separation](super::separation) finds it
     /// out.
     pub(super) has_exact_model: bool,
+    /// Whether sensors in no cluster may change clusters. Not before these are of one part each: what two parts in one cluster explain of
+    /// others says little.
+    pub(super) rest_takes_part: bool,
     /// Groups that were tried elsewhere, and clusters that were to be dispersed, without success: first its sensors, then those of the
     /// clusters around it. They are not tried again as long as these are the same.
     pub(super) failed: BTreeSet<Vec<Vec<usize>>>,
@@ -58,35 +60,49 @@ pub(super) struct Search {
 impl Search {
     /// Of sensors that felt this, and that have these affinities, sensors × sensors, 0 to 1.
     pub(super) fn new(felt: Felt, affinities: Mat<f64>) -> Self {
-        Self { felt, affinities, has_exact_model: false, failed: BTreeSet::new() }
+        Self { felt, affinities, has_exact_model: false, rest_takes_part: false, failed: BTreeSet::new() }
     }
 
     /// The clusters, each of one motion. Sensors that no motion explains are in none.
     pub(super) fn clusters(&mut self) -> Vec<Cluster> {
-        let every: Vec<usize> = (0..self.felt.roots.sensors()).collect();
-        let seeds = self.seed_clusters(&every);
-        let mut clusters = self.alternated(seeds, &every);
+        let seeds = self.seed_clusters();
+        let mut clusters = self.settled(seeds);
+        if let Some(separated) = self.separated(&clusters) {
+            return separated;
+        }
+        if !self.in_none(&clusters).is_empty() {
+            self.rest_takes_part = true;
+            clusters = self.settled(clusters);
+        }
+        clusters.par_iter_mut().for_each(|own| own.learn_with_least_rank(&self.felt));
+        clusters
+    }
+
+    /// Alternates moves of sensors with regrouping of faces, as long as anything changes.
+    fn settled(&mut self, clusters: Vec<Cluster>) -> Vec<Cluster> {
+        let mut clusters = self.alternated(clusters);
         for _ in 0..MAX_REGROUPINGS {
             let Some(parts) = self.regrouped(&clusters) else { break };
-            clusters = self.alternated(parts, &every);
+            clusters = self.alternated(parts);
         }
-        self.separated(&clusters).unwrap_or_else(|| {
-            clusters.par_iter_mut().for_each(|own| own.learn_with_least_rank(&self.felt));
-            clusters
-        })
+        clusters
     }
 
     /// Merges clusters, and assigns sensors and groups of sensors to others, in turn, as long as anything changes.
-    fn alternated(&mut self, mut clusters: Vec<Cluster>, every: &[usize]) -> Vec<Cluster> {
+    fn alternated(&mut self, mut clusters: Vec<Cluster>) -> Vec<Cluster> {
+        let every = self.every();
         let mut before = Vec::new();
         for _ in 0..MAX_ALTERNATIONS {
             clusters = self.merged(clusters);
             clusters.par_iter_mut().for_each(|own| own.learn_with_least_rank(&self.felt));
-            clusters = self.assigned(clusters, every);
+            clusters = self.assigned(clusters, &every);
+            if self.rest_takes_part {
+                clusters = self.with_rest(clusters);
+            }
             let count = clusters.len();
             clusters = self.split(clusters);
             if clusters.len() > count {
-                clusters = self.assigned(clusters, every);
+                clusters = self.assigned(clusters, &every);
             }
             clusters = self.moved(clusters);
             clusters = self.dispersed(clusters);
@@ -106,12 +122,22 @@ impl Search {
 
     /// All sensors as one cluster.
     pub(super) fn whole(&self) -> Cluster {
-        Cluster::new(&self.felt, (0..self.felt.roots.sensors()).collect())
+        Cluster::new(&self.felt, self.every())
+    }
+
+    /// All sensors.
+    pub(super) fn every(&self) -> Vec<usize> {
+        (0..self.felt.roots.sensors()).collect()
+    }
+
+    /// The sensors that are in none of these clusters.
+    pub(super) fn in_none(&self, clusters: &[Cluster]) -> Vec<usize> {
+        left(clusters, &self.every())
     }
 
     /// The seed clusters that one motion explains.
-    fn seed_clusters(&mut self, sensors: &[usize]) -> Vec<Cluster> {
-        let seeds = self.seeds(sensors, SEED_SENSORS[1]);
+    fn seed_clusters(&mut self) -> Vec<Cluster> {
+        let seeds = self.seeds(&self.every(), SEED_SENSORS[1]);
         self.calibrate(&seeds);
         self.unmixed(&seeds)
     }
@@ -139,7 +165,7 @@ impl Search {
     }
 
     /// Small clusters of some sensors, of at most so many, by average linkage on their affinities.
-    fn seeds(&self, sensors: &[usize], most: usize) -> Vec<Vec<usize>> {
+    pub(super) fn seeds(&self, sensors: &[usize], most: usize) -> Vec<Vec<usize>> {
         let mut seeds = self.linked(sensors, most);
         seeds.retain(|own| own.len() >= SEED_SENSORS[0]);
         seeds
@@ -300,30 +326,19 @@ impl Search {
         clusters
     }
 
-    /// Splits clusters into pieces that have nothing in common.
-    fn split(&mut self, clusters: Vec<Cluster>) -> Vec<Cluster> {
-        let mut found = Vec::new();
-        for cluster in clusters {
-            match self.split_once(&cluster) {
-                Some(pieces) => found.extend(pieces),
-                None => found.push(cluster),
-            }
-        }
-        found
+    /// Description length of some sensors: of these clusters, and of each sensor that is in none.
+    pub(super) fn length_of(&self, clusters: &[Cluster], sensors: &[usize]) -> f64 {
+        let alone = left(clusters, sensors).into_iter().map(|sensor| vec![sensor]);
+        let all: Vec<Vec<usize>> = clusters.iter().map(|own| own.sensors.clone()).chain(alone).collect();
+        let lengths: Vec<f64> = all.into_par_iter().map(|own| self.learned(own).description_length).collect();
+        lengths.iter().sum()
     }
+}
 
-    /// The pieces of a cluster, if two of them have nothing in common: faces of two parts, say, of rank three each.
-    fn split_once(&mut self, cluster: &Cluster) -> Option<Vec<Cluster>> {
-        let most = (PIECE * cluster.sensors.len() as f64) as usize;
-        let mut seeds = self.seeds(&cluster.sensors, most);
-        seeds.sort_by_key(|own| Reverse(own.len()));
-        seeds.truncate(2);
-        let pieces: Vec<Cluster> = seeds.into_par_iter().map(|own| Cluster::new(&self.felt, own)).collect();
-        let [first, second] = &pieces[..] else { return None };
-        let both = Cluster::union(&self.felt, first, second);
-        let saving = first.description_length + second.description_length - both.description_length;
-        (saving <= MIN_SAVING).then(|| self.assigned(pieces, &cluster.sensors))
-    }
+/// Those of some sensors that are in none of these clusters.
+fn left(clusters: &[Cluster], sensors: &[usize]) -> Vec<usize> {
+    let taken: BTreeSet<usize> = clusters.iter().flat_map(|own| own.sensors.iter().copied()).collect();
+    sensors.iter().copied().filter(|sensor| !taken.contains(sensor)).collect()
 }
 
 /// The pair of clusters whose union saves most, if that is more than [`MIN_SAVING`].

@@ -9,8 +9,6 @@
 //! With pressures over a time step the model has an error. It grows with the speed, so that it is large at few samples. A cluster with such
 //! a residual is not taken apart.
 
-use std::collections::BTreeSet;
-
 use rayon::prelude::*;
 
 use super::cluster::{Cluster, MIN_FREEDOM};
@@ -79,7 +77,7 @@ impl Search {
 
     /// The same with one idea of what is exact. A cluster that leaves more than `nearly` is none.
     fn separated_at(&mut self, mut found: Vec<Cluster>, nearly: f64) -> Option<Vec<Cluster>> {
-        let all: Vec<usize> = (0..self.felt.roots.sensors()).collect();
+        let all = self.every();
         let mut before = Vec::new();
         for round in 0..MAX_ROUNDS {
             found = self.apart(found);
@@ -177,12 +175,6 @@ impl Search {
         let taken: Vec<usize> = found.iter().flat_map(|own| own.sensors.iter().copied()).collect();
         settled.extend(found);
         settled.into_iter().chain(self.without(other, &taken)).collect()
-    }
-
-    /// The sensors that are in none of these clusters.
-    pub(super) fn in_none(&self, clusters: &[Cluster]) -> Vec<usize> {
-        let home: BTreeSet<usize> = clusters.iter().flat_map(|own| own.sensors.iter().copied()).collect();
-        (0..self.felt.roots.sensors()).filter(|sensor| !home.contains(sensor)).collect()
     }
 
     /// Clusters without these sensors.

@@ -1,64 +1,15 @@
 //! Test that faces of two boxes on a hinge come to their own boxes, and that right clusters stay.
 
-use faer::Mat;
 use rand::RngExt;
 
-use super::super::roots::product;
-use super::super::testing::felt_of;
+use super::super::testing::{hinged_boxes, pair, pairs};
 use super::*;
 use crate::numerics::rng::stream;
 
-/// Sensors of each pair of opposite faces.
-const SENSORS: usize = 10;
-/// Pairs of opposite faces of a box.
-const PAIRS: usize = 3;
-
-/// The sensors of the faces of a box whose normals lie along an axis. The hinge lies along axis 0.
-fn pair(part: usize, axis: usize) -> Vec<usize> {
-    let first = (part * PAIRS + axis) * SENSORS;
-    (first..first + SENSORS).collect()
-}
-
-/// The sensors of some pairs of faces.
-fn pairs(of: &[(usize, usize)]) -> Vec<usize> {
-    of.iter().flat_map(|&(part, axis)| pair(part, axis)).collect()
-}
-
-/// What two boxes feel that a hinge joins. They move independently, but for the velocity along the hinge. Places are measured from it.
-fn felt() -> Search {
-    let mut rng = stream(5, 1, "regrouping", 0);
-    let mut uniform = |rows, columns| Mat::from_fn(rows, columns, |_, _| rng.random_range(-1.0_f64..1.0));
-    let (first, mut second) = (uniform(600, 6), uniform(600, 6));
-    second.col_mut(0).copy_from(first.col(0));
-    let velocities: Vec<Mat<f64>> = [first, second]
-        .iter()
-        .map(|motion| {
-            let places = uniform(3, PAIRS * SENSORS);
-            // Velocity along the normal n at the place r: n · v + (r × n) · ω.
-            let own = Mat::from_fn(6, PAIRS * SENSORS, |at, sensor| {
-                let axis = sensor / SENSORS;
-                let [next, last] = [(axis + 1) % 3, (axis + 2) % 3];
-                let side = if sensor % 2 == 0 { 1.0 } else { -1.0 };
-                let value = match at {
-                    at if at == axis => 1.0,
-                    at if at == 3 + next => places[(last, sensor)],
-                    at if at == 3 + last => -places[(next, sensor)],
-                    _ => 0.0,
-                };
-                side * value
-            });
-            product(motion.as_ref(), own.as_ref())
-        })
-        .collect();
-    let count = PAIRS * SENSORS;
-    let (felt, affinities) =
-        felt_of(&Mat::from_fn(600, 2 * count, |t, sensor| velocities[sensor / count][(t, sensor % count)]));
-    Search::new(felt, affinities)
-}
-
 /// The sensors of clusters after they were regrouped, if they were.
 fn regrouped(clusters: &[&[(usize, usize)]]) -> Option<Vec<Vec<usize>>> {
-    let mut search = felt();
+    let mut search = hinged_boxes(6);
+    search.rest_takes_part = true;
     let clusters: Vec<Cluster> = clusters.iter().map(|own| Cluster::new(&search.felt, pairs(own))).collect();
     let found = search.regrouped(&clusters)?;
     let mut found: Vec<Vec<usize>> = found.into_iter().map(|own| own.sensors).collect();
@@ -78,13 +29,23 @@ fn faces_along_a_hinge_come_to_their_own_boxes() {
 }
 
 #[test]
+fn a_box_whose_faces_are_in_no_cluster_is_found() {
+    let boxes = vec![pairs(&[(0, 0), (0, 1), (0, 2)]), pairs(&[(1, 0), (1, 1), (1, 2)])];
+    let found = regrouped(&[&[(0, 0), (1, 0)], &[(0, 1), (0, 2)]]);
+    assert_eq!(found, Some(boxes.clone()));
+    // It has no face in a cluster at all.
+    let found = regrouped(&[&[(0, 0), (0, 1), (0, 2)]]);
+    assert_eq!(found, Some(boxes));
+}
+
+#[test]
 fn boxes_stay() {
     assert_eq!(regrouped(&[&[(0, 0), (0, 1), (0, 2)], &[(1, 0), (1, 1), (1, 2)]]), None);
 }
 
 #[test]
 fn a_cluster_of_two_boxes_is_divided_into_its_flat_faces() {
-    let search = felt();
+    let search = hinged_boxes(6);
     let cluster = Cluster::new(&search.felt, pairs(&[(0, 0), (1, 0)]));
     let mut found = search.flat_faces(&cluster);
     found.sort();

@@ -1,0 +1,48 @@
+//! Split clusters whose pieces have nothing in common.
+
+use std::cmp::Reverse;
+
+use rayon::prelude::*;
+
+use super::cluster::Cluster;
+use super::search::{MIN_SAVING, PIECE, Search};
+
+impl Search {
+    /// Splits clusters into pieces that have nothing in common.
+    pub(super) fn split(&mut self, clusters: Vec<Cluster>) -> Vec<Cluster> {
+        let mut found = Vec::new();
+        for cluster in clusters {
+            match self.split_once(&cluster) {
+                Some(pieces) => found.extend(pieces),
+                None => found.push(cluster),
+            }
+        }
+        found
+    }
+
+    /// The pieces of a cluster, if two of them have nothing in common: faces of two parts, say, of rank three each. But two faces of one part
+    /// may be linked by a third only, which neither explains: then the description of all is longer.
+    fn split_once(&mut self, cluster: &Cluster) -> Option<Vec<Cluster>> {
+        let most = (PIECE * cluster.sensors.len() as f64) as usize;
+        let mut seeds = self.seeds(&cluster.sensors, most);
+        seeds.sort_by_key(|own| Reverse(own.len()));
+        seeds.truncate(2);
+        let pieces: Vec<Cluster> = seeds.into_par_iter().map(|own| Cluster::new(&self.felt, own)).collect();
+        let [first, second] = &pieces[..] else { return None };
+        let both = Cluster::union(&self.felt, first, second);
+        let saving = first.description_length + second.description_length - both.description_length;
+        if saving > MIN_SAVING {
+            return None;
+        }
+        let pieces = self.assigned(pieces, &cluster.sensors);
+        let length = self.learned(cluster.sensors.clone()).description_length;
+        if self.length_of(&pieces, &cluster.sensors) - length > MIN_SAVING {
+            cluster.complete_roots(&mut self.felt);
+            return None;
+        }
+        Some(pieces)
+    }
+}
+
+#[cfg(test)]
+mod tests;
