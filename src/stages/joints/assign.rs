@@ -21,7 +21,8 @@ const MIN_MOVE_GAIN: f64 = 0.005;
 /// Most times that moves of all clusters are tried.
 const MAX_SWEEPS: usize = 3;
 
-/// The part of each unassigned cluster, by its place among `parts`; `None` where no joint gains by it.
+/// The part of each unassigned cluster, by its place among `parts`; `None` where no joint gains by it. Also what the tree then says of joint
+/// speeds, in nats; 0 if there is nothing to assign.
 ///
 /// `pairs` are clusters that may be the two ends of one part, which gain most together. Greedily, the cluster or pair by which
 /// the tree gains most information is assigned, as long as that is more than [`MIN_GAIN`]. Then each is tried on the other parts.
@@ -30,10 +31,10 @@ pub(super) fn assign(
     unassigned: &[MotionSubspace],
     pairs: &[(usize, usize)],
     samples: usize,
-) -> Vec<Option<usize>> {
+) -> (Vec<Option<usize>>, f64) {
     let mut assigned = vec![None; unassigned.len()];
     if parts.len() < 2 || unassigned.is_empty() {
-        return assigned;
+        return (assigned, 0.0);
     }
     let moments = CrossMoments::new(parts, unassigned, samples);
     let mut tree = Assignment::new(&moments);
@@ -73,7 +74,7 @@ pub(super) fn assign(
             break;
         }
     }
-    assigned
+    (assigned, tree.information)
 }
 
 /// Information, in nats, that the tree over the other parts gains if one is merged with the part that gains most by it.

@@ -1,7 +1,10 @@
 //! Refine estimated parts by their joints, and find the tree over them: unassigned clusters get a part, and spurious parts go.
+//!
+//! The large faces of a thin plate feel its velocity across and two rotations, its edges the rest. They have nothing in common, so that the
+//! search takes them for two parts. The joints tell that they are one.
 
 use std::cmp::Reverse;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use rand::Rng;
 use rayon::prelude::*;
@@ -17,7 +20,8 @@ use crate::stages::tree::Edge;
 
 /// Samples that similarity is computed from, spread over all.
 const MAX_SAMPLES: usize = 2000;
-/// Information, in nats, that the tree must gain by merging a small part with another, so that the part is spurious.
+/// Information, in nats, that the tree must gain by merging a small part with another, so that the part is spurious; and against the whole by
+/// its pieces, for each further part that takes some. More pieces always gain something.
 const SPURIOUS: f64 = 0.5;
 /// Rank from which on a part is no piece of another: a cylinder feels its motion but its spin.
 const WHOLE_RANK: usize = 5;
@@ -56,14 +60,11 @@ fn refined(
     mut parts: RigidParts,
 ) -> (RigidParts, Vec<usize>, Vec<MotionSubspace>) {
     let mut refinement = Refinement::new(tactile, signed);
-    let (mut refined, names, motions) = loop {
-        let mut refined = parts.clone();
-        let (names, motions) = refinement.assigned(&mut refined);
-        let Some(spurious) = refinement.spurious(&parts, &names, &motions) else {
-            break (refined, names, motions);
-        };
-        refinement.dissolve(&mut parts, spurious);
-    };
+    let mut assigned = refinement.assigned(&parts);
+    while let Some(spurious) = refinement.spurious(&parts, &assigned) {
+        (parts, assigned) = refinement.dissolved(&parts, spurious);
+    }
+    let Assigned { parts: mut refined, names, motions, .. } = assigned;
     // Unassigned clusters leave gaps in the labels.
     let labels = named_by_appearance(&refined.labels);
     let new: BTreeMap<usize, usize> = refined.labels.iter().copied().zip(labels.iter().copied()).collect();
@@ -105,6 +106,17 @@ fn assign_to(parts: &mut RigidParts, sensors: &[usize], part: usize) {
     }
 }
 
+/// Parts whose unassigned clusters have been assigned.
+struct Assigned {
+    parts: RigidParts,
+    /// Their labels.
+    names: Vec<usize>,
+    /// Their motions, with those of their clusters.
+    motions: Vec<MotionSubspace>,
+    /// What the tree says of joint speeds, in nats.
+    information: f64,
+}
+
 /// What all sensors feel, and the motions that were learned from it.
 struct Refinement<'a> {
     series: Vec<&'a [f32]>,
@@ -126,52 +138,54 @@ impl<'a> Refinement<'a> {
         self.series.first().map_or(0, |series| series.len())
     }
 
-    fn motions(&mut self, clusters: &[&Vec<usize>]) -> Vec<MotionSubspace> {
+    /// The motions of clusters, by their sensors: as the search found them, or else learned from these.
+    fn motions(&mut self, parts: &RigidParts, clusters: &Members) -> Vec<MotionSubspace> {
         let found = |sensors: &Vec<usize>| {
             let series: Vec<&[f32]> = sensors.iter().map(|&sensor| self.series[sensor]).collect();
             (sensors.clone(), MotionSubspace::of_cluster(&series, self.signed))
         };
-        let new = clusters.par_iter().filter(|sensors| !self.known.contains_key(**sensors));
-        let new: Vec<(Vec<usize>, MotionSubspace)> = new.map(|sensors| found(sensors)).collect();
-        self.known.extend(new);
-        clusters.iter().map(|sensors| self.known[*sensors].clone()).collect()
+        let new: Vec<&Vec<usize>> = clusters
+            .iter()
+            .filter(|(label, own)| !parts.motions.contains_key(label) && !self.known.contains_key(*own))
+            .map(|(_, own)| own)
+            .collect();
+        self.known.extend(new.into_par_iter().map(found).collect::<Vec<_>>());
+        let motion = |(label, own)| parts.motions.get(label).unwrap_or_else(|| &self.known[own]).clone();
+        clusters.iter().map(motion).collect()
     }
 
-    /// Assigns the unassigned clusters. Out: the labels of the parts, and their motions with those of their clusters.
-    fn assigned(&mut self, parts: &mut RigidParts) -> (Vec<usize>, Vec<MotionSubspace>) {
-        let (known, clusters) = parts_and_unassigned(parts);
+    /// Assigns the unassigned clusters.
+    fn assigned(&mut self, parts: &RigidParts) -> Assigned {
+        let mut parts = parts.clone();
+        let (known, clusters) = parts_and_unassigned(&parts);
         let (clusters, rest) = largest(clusters);
-        let learned: Vec<&Vec<usize>> =
-            known.iter().filter(|(part, _)| !parts.motions.contains_key(part)).map(|(_, own)| own).collect();
-        let mut learned = self.motions(&learned).into_iter();
-        let mut motions: Vec<MotionSubspace> = known
-            .keys()
-            .map(|part| parts.motions.get(part).cloned().or_else(|| learned.next()).expect("learned"))
-            .collect();
+        let mut motions = self.motions(&parts, &known);
         let mut names: Vec<usize> = known.into_keys().collect();
-        let of_clusters = self.motions(&clusters.values().collect::<Vec<_>>());
+        let of_clusters = self.motions(&parts, &clusters);
         let members: Vec<&[usize]> = clusters.values().map(Vec::as_slice).collect();
         let pairs = opposite_pairs(&self.roots, &members);
-        let found = assign(&motions, &of_clusters, &pairs, self.samples());
+        let (found, information) = assign(&motions, &of_clusters, &pairs, self.samples());
         if names.is_empty() {
             names.extend(clusters.keys());
             motions.extend(of_clusters);
         } else {
             for (sensors, (part, own)) in clusters.values().zip(found.into_iter().zip(of_clusters)) {
                 let Some(part) = part else {
-                    assign_by_residual(parts, sensors, names[0]);
+                    assign_by_residual(&mut parts, sensors, names[0]);
                     continue;
                 };
                 motions[part] = motions[part].with(&own);
-                assign_to(parts, sensors, names[part]);
+                assign_to(&mut parts, sensors, names[part]);
             }
         }
-        rest.iter().for_each(|sensors| assign_by_residual(parts, sensors, names[0]));
-        (names, motions)
+        rest.iter().for_each(|sensors| assign_by_residual(&mut parts, sensors, names[0]));
+        Assigned { parts, names, motions, information }
     }
 
-    /// Of the small parts of low rank, the one by whose merging the tree gains most information, if that is much.
-    fn spurious(&self, parts: &RigidParts, names: &[usize], motions: &[MotionSubspace]) -> Option<usize> {
+    /// Of the small parts of low rank, the one by whose merging the tree gains most information, if that is much. In: parts, and the same
+    /// with their clusters assigned.
+    fn spurious(&self, parts: &RigidParts, assigned: &Assigned) -> Option<usize> {
+        let Assigned { names, motions, .. } = assigned;
         let sizes = sizes(&parts.labels);
         let own: Vec<usize> = names.iter().map(|name| sizes[name]).collect();
         let small = typical_size(own.clone()).div_ceil(2);
@@ -184,20 +198,45 @@ impl<'a> Refinement<'a> {
         most.filter(|(gain, _)| *gain > SPURIOUS).map(|(_, at)| names[at])
     }
 
-    /// Makes a part unassigned clusters of sensors that feel the same.
-    fn dissolve(&self, parts: &mut RigidParts, part: usize) {
-        parts.motions.remove(&part);
+    /// The parts without one, and the same with its sensors assigned: as one cluster, whose motion they tell best together, or, if the tree
+    /// then says much more, in clusters that feel the same.
+    fn dissolved(&mut self, parts: &RigidParts, part: usize) -> (RigidParts, Assigned) {
         let own: Vec<usize> = (0..parts.labels.len()).filter(|at| parts.labels[*at] == part).collect();
-        own.iter().for_each(|&sensor| parts.residuals[sensor] = 0.0);
-        for cluster in similar(&self.roots, &own) {
-            let name = parts.labels.iter().chain(&parts.unassigned).max().map_or(0, |last| last + 1);
-            assign_to(parts, &cluster, name);
-            parts.unassigned.push(name);
+        let pieces = similar(&self.roots, &own);
+        let whole = unassigned(parts, part, std::slice::from_ref(&own));
+        let of_whole = self.assigned(&whole);
+        if pieces.len() < 2 {
+            return (whole, of_whole);
         }
-        for others in &mut parts.alternatives {
-            others.retain(|(other, _)| *other != part);
+        let pieces = unassigned(parts, part, &pieces);
+        let of_pieces = self.assigned(&pieces);
+        let takers: BTreeSet<usize> = own.iter().map(|&sensor| of_pieces.parts.labels[sensor]).collect();
+        let least = SPURIOUS * (takers.len() as f64 - 1.0);
+        if takers.len() > 1 && of_pieces.information > of_whole.information + least {
+            (pieces, of_pieces)
+        } else {
+            (whole, of_whole)
         }
     }
+}
+
+/// The parts without one, whose sensors are unassigned, in these clusters.
+fn unassigned(parts: &RigidParts, part: usize, clusters: &[Vec<usize>]) -> RigidParts {
+    let mut parts = parts.clone();
+    let motion = parts.motions.remove(&part);
+    let first = parts.labels.iter().chain(&parts.unassigned).max().map_or(0, |last| last + 1);
+    for (label, cluster) in (first..).zip(clusters) {
+        cluster.iter().for_each(|&sensor| parts.residuals[sensor] = 0.0);
+        assign_to(&mut parts, cluster, label);
+        parts.unassigned.push(label);
+    }
+    if clusters.len() == 1 {
+        parts.motions.extend(motion.map(|motion| (first, motion)));
+    }
+    for others in &mut parts.alternatives {
+        others.retain(|(other, _)| *other != part);
+    }
+    parts
 }
 
 /// The sensors of parts, and those of unassigned clusters.

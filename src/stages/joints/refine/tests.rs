@@ -1,11 +1,16 @@
 //! Test how joints refine the parts.
 
+use std::f64::consts::PI;
+
 use rand::RngExt;
 
 use super::super::fixtures::row;
 use super::*;
 use crate::numerics::rng::stream;
 use crate::stages::rigid_parts::fixtures::sensor_series;
+
+/// T, the samples of planar parts.
+const SAMPLES: usize = 4000;
 
 /// Two parts of sensors that feel four components of their own, and more single sensors than are tried on parts.
 fn many_singles() -> (Tactile, RigidParts) {
@@ -41,27 +46,35 @@ fn every_sensor_is_on_a_part_of_the_tree() {
     assert!(refined.alternatives.iter().flatten().all(|(part, residual)| *part < 2 && residual.is_finite()));
 }
 
+/// Parts of 20 sensors each that feel these motions, and a small one of sensors with these loadings of another.
+fn with_small_part(
+    motions: &[&MotionSubspace],
+    small: &MotionSubspace,
+    loadings: &[Vec<f64>],
+) -> (Tactile, RigidParts) {
+    let mut rng = stream(2, 1, "refine", 0);
+    let mut pressures = Vec::new();
+    for motion in motions {
+        for _ in 0..20 {
+            let c: Vec<f64> = (0..motion.rank).map(|_| rng.random_range(-1.0..1.0)).collect();
+            pressures.extend(sensor_series(&motion.basis, &c));
+        }
+    }
+    loadings.iter().for_each(|c| pressures.extend(sensor_series(&small.basis, c)));
+    let labels: Vec<usize> = (0..20 * motions.len() + loadings.len()).map(|sensor| sensor / 20).collect();
+    let (residuals, alternatives) = (vec![0.0; labels.len()], vec![vec![(0, 0.5)]; labels.len()]);
+    (
+        Tactile { samples: SAMPLES, pressures },
+        RigidParts { labels, residuals, alternatives, unassigned: Vec::new(), motions: BTreeMap::new() },
+    )
+}
+
 /// Three planar parts in a row of 20 sensors on their sides, and a fourth of six, with loadings `c` of the motion of the last
 /// part and of the ends of the middle one.
 fn small_part(c: impl Fn(usize) -> [f64; 3]) -> (Tactile, RigidParts) {
-    let samples = 4000;
-    let (sides, ends) = row(4, samples);
-    let mut rng = stream(2, 1, "refine", 0);
-    let mut pressures = Vec::new();
-    for side in &sides[..3] {
-        for _ in 0..20 {
-            let c = [rng.random_range(-1.0..1.0), rng.random_range(-1.0..1.0)];
-            pressures.extend(sensor_series(&side.basis, &c));
-        }
-    }
-    let last = sides[3].with(&ends[1]);
-    (0..6).for_each(|sensor| pressures.extend(sensor_series(&last.basis, &c(sensor))));
-    let labels: Vec<usize> = (0..66).map(|sensor| sensor / 20).collect();
-    let (residuals, alternatives) = (vec![0.0; labels.len()], vec![vec![(0, 0.5)]; labels.len()]);
-    (
-        Tactile { samples, pressures },
-        RigidParts { labels, residuals, alternatives, unassigned: Vec::new(), motions: BTreeMap::new() },
-    )
+    let (sides, ends) = row(4, SAMPLES);
+    let loadings: Vec<Vec<f64>> = (0..6).map(|sensor| c(sensor).to_vec()).collect();
+    with_small_part(&sides[..3].iter().collect::<Vec<_>>(), &sides[3].with(&ends[1]), &loadings)
 }
 
 #[test]
@@ -74,6 +87,30 @@ fn a_small_cluster_is_a_part_unless_the_joints_need_it_elsewhere() {
     assert_eq!(foot[60..], [3; 6]);
     let ends = refined(small_part(|sensor| [0.0, 0.0, sign(sensor)]));
     assert_eq!(ends[60..], [1; 6]);
+}
+
+#[test]
+fn what_a_part_feels_only_together_comes_to_it_as_a_whole() {
+    let (sides, ends) = row(3, SAMPLES);
+    // The outer parts are whole. The middle one has its ends in one cluster, and its sides in a small one, of which no two sensors feel the
+    // same.
+    let [first, last] = [0, 2].map(|part| sides[part].with(&ends[part]));
+    let loadings: Vec<Vec<f64>> =
+        (0..6).map(|sensor| (f64::from(sensor) * PI / 3.0).sin_cos()).map(|(a, b)| vec![a, b]).collect();
+    let (tactile, parts) = with_small_part(&[&first, &ends[1], &last], &sides[1], &loadings);
+    let (refined, _) = refine(&tactile, false, parts, &mut stream(1, 1, "co-motion", 0));
+    assert_eq!(refined.labels[60..], [1; 6]);
+}
+
+#[test]
+fn pieces_of_several_parts_come_to_their_own() {
+    let (sides, ends) = row(4, SAMPLES);
+    let loadings: Vec<Vec<f64>> =
+        [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]].map(|c| c.to_vec()).to_vec();
+    let both = ends[1].with(&ends[2]);
+    let (tactile, parts) = with_small_part(&sides.iter().collect::<Vec<_>>(), &both, &loadings);
+    let (refined, _) = refine(&tactile, false, parts, &mut stream(1, 1, "co-motion", 0));
+    assert_eq!(refined.labels[80..], [1, 2, 1, 2]);
 }
 
 #[test]
