@@ -141,6 +141,7 @@ fn the_report_shows_every_figure_and_nothing_overflows() {
         for forbidden in ["src=\"http", "href=\"http", "@import", "url("] {
             assert!(!report.contains(forbidden), "the report needs the network: {forbidden}");
         }
+        assert!(report.contains("http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'"));
         let claims = folder.rows(format!("{experiment}/claims.csv"));
         let testable = claims.iter().filter(|row| !row["accepted_low"].is_empty()).count();
         assert!(testable >= 7, "{experiment}: {testable} claims can be tested");

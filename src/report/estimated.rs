@@ -1,7 +1,8 @@
 //! Show an estimate from one's own data as a page: parts, tree and touch in the viewer, and tables of parts and joints.
 
-use maud::{DOCTYPE, Markup, PreEscaped, html};
+use maud::{Markup, html};
 
+use super::document::{STYLE, document};
 use super::numbers::percent;
 use super::viewer;
 use super::viewer::scene::Scene;
@@ -37,33 +38,23 @@ pub(crate) struct PartLine {
 /// The page, which needs no other file and no network.
 pub(crate) fn page(estimated: &Estimated) -> String {
     let Estimated { name, answers, parts, scene, facts } = estimated;
-    html! {
-        (DOCTYPE)
-        html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                meta http-equiv="Content-Security-Policy" content=(viewer::page::POLICY);
-                title { "bodyschema: " (name) }
-                style { (PreEscaped(include_str!("style.css"))) (PreEscaped(viewer::page::STYLE)) }
+    let body = html! {
+        body {
+            header {
+                h1 { "Estimated parts and tree from " (name) }
+                @for answer in answers { p.headline { (answer) } }
             }
-            body {
-                header {
-                    h1 { "Estimated parts and tree from " (name) }
-                    @for answer in answers { p.headline { (answer) } }
-                }
-                main {
-                    (viewer::page::section(&[scene.data()]))
-                    (part_table(parts))
-                    (edge_table(scene))
-                    h2 { "How this estimate was made" }
-                    dl { @for (name, value) in facts { dt { (name) } dd { (value) } } }
-                    p { "All numbers are in parts.csv, tree.csv, edges.csv and summary.json beside this page." }
-                }
+            main {
+                (viewer::page::section(&[scene.data()]))
+                (part_table(parts))
+                (edge_table(scene))
+                h2 { "How this estimate was made" }
+                dl { @for (name, value) in facts { dt { (name) } dd { (value) } } }
+                p { "All numbers are in parts.csv, tree.csv, edges.csv and summary.json beside this page." }
             }
         }
-    }
-    .into_string()
+    };
+    document(name, &[STYLE, viewer::page::STYLE], &body)
 }
 
 fn part_table(parts: &[PartLine]) -> Markup {

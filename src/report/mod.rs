@@ -1,6 +1,7 @@
 //! Show what an experiment found: tables and pictures of the paper's figures, the table of claims, and a page.
 
 pub(crate) mod claims_table;
+pub(crate) mod document;
 pub(crate) mod estimated;
 pub(crate) mod figure_rows;
 pub(crate) mod figures;

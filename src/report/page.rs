@@ -4,10 +4,11 @@
 
 use std::path::Path;
 
-use maud::{DOCTYPE, Markup, PreEscaped, html};
+use maud::{Markup, PreEscaped, html};
 use serde_json::Value;
 
 use super::claims_table::Row;
+use super::document::{STYLE, document};
 use super::figure_rows::Counting;
 use super::headline::Headline;
 use super::overview::overview;
@@ -58,10 +59,10 @@ impl Page {
     /// # Errors
     /// If it cannot be written.
     pub fn write(&self, folder: &Path) -> Result<(), FileError> {
-        write_text(&folder.join("report.html"), &self.html().into_string())
+        write_text(&folder.join("report.html"), &self.html())
     }
 
-    fn html(&self) -> Markup {
+    fn html(&self) -> String {
         let Self { rows, pictures, scenes, manifest } = self;
         let experiment = match manifest.experiment.as_deref() {
             Some("exp1") => "Experiment 1: body schema estimation",
@@ -73,42 +74,34 @@ impl Page {
             let picture = pictures.iter().find(|picture| picture.name == figure.name)?;
             Some((figure, &picture.svg))
         });
-        html! {
-            (DOCTYPE)
-            html lang="en" {
-                head {
-                    meta charset="utf-8";
-                    meta name="viewport" content="width=device-width, initial-scale=1";
-                    title { "bodyschema: " (experiment) }
-                    style { (PreEscaped(include_str!("style.css"))) (PreEscaped(viewer::page::STYLE)) }
+        let body = html! {
+            body {
+                header {
+                    h1 { (experiment) }
+                    p { "A replication of Mimura, Hagiwara, Taniguchi and Inamura, " em {
+                        "Bayesian Body Schema Estimation using Tactile Information obtained through Coordinated \
+                         Random Movements"
+                    } " (Advanced Robotics, 2017)." }
+                    @if let Some(headline) = Headline::of(rows) { (headline.in_html()) }
+                    nav {
+                        @for (to, name) in SECTIONS { a href={ "#" (to) } { (name) } " " }
+                    }
                 }
-                body {
-                    header {
-                        h1 { (experiment) }
-                        p { "A replication of Mimura, Hagiwara, Taniguchi and Inamura, " em {
-                            "Bayesian Body Schema Estimation using Tactile Information obtained through Coordinated \
-                             Random Movements"
-                        } " (Advanced Robotics, 2017)." }
-                        @if let Some(headline) = Headline::of(rows) { (headline.in_html()) }
-                        nav {
-                            @for (to, name) in SECTIONS { a href={ "#" (to) } { (name) } " " }
-                        }
+                main {
+                    (overview(rows, &class, &mark))
+                    p { (manifest.summary.as_deref().unwrap_or_default()) }
+                    @if !scenes.is_empty() { (movement_section(scenes)) }
+                    (claims_section(rows))
+                    section id="figures" {
+                        h2 { "Figures" }
+                        @for (figure, svg) in drawn { (figure_section(figure, svg, rows)) }
                     }
-                    main {
-                        (overview(rows, &class, &mark))
-                        p { (manifest.summary.as_deref().unwrap_or_default()) }
-                        @if !scenes.is_empty() { (movement_section(scenes)) }
-                        (claims_section(rows))
-                        section id="figures" {
-                            h2 { "Figures" }
-                            @for (figure, svg) in drawn { (figure_section(figure, svg, rows)) }
-                        }
-                        (settings_section(manifest.settings.as_ref().unwrap_or(&Value::Null)))
-                        (manifest_section(manifest))
-                    }
+                    (settings_section(manifest.settings.as_ref().unwrap_or(&Value::Null)))
+                    (manifest_section(manifest))
                 }
             }
-        }
+        };
+        document(experiment, &[STYLE, viewer::page::STYLE], &body)
     }
 }
 

@@ -1,7 +1,9 @@
 //! Write the viewer as a section of a page, and as a page of its own that needs no other file and no network.
 
-use maud::{DOCTYPE, Markup, PreEscaped, html};
+use maud::{Markup, PreEscaped, html};
 use serde_json::Value;
+
+use super::super::document::document;
 
 /// Its programs, in the order in which they use each other.
 const PROGRAMS: [&str; 5] = [
@@ -15,30 +17,17 @@ const PROGRAMS: [&str; 5] = [
 /// Its style.
 pub(crate) const STYLE: &str = include_str!("viewer.css");
 
-/// A page may load nothing, from nowhere.
-pub(crate) const POLICY: &str = "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'";
-
 /// A page with nothing but the viewer.
 pub(crate) fn page(title: &str, scenes: &[Value]) -> String {
-    html! {
-        (DOCTYPE)
-        html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                meta http-equiv="Content-Security-Policy" content=(POLICY);
-                title { "bodyschema: " (title) }
-                style { (PreEscaped(STYLE)) }
-            }
-            body.viewer-page {
-                main {
-                    h1 { (title) }
-                    (section(scenes))
-                }
+    let body = html! {
+        body.viewer-page {
+            main {
+                h1 { (title) }
+                (section(scenes))
             }
         }
-    }
-    .into_string()
+    };
+    document(title, &[STYLE], &body)
 }
 
 /// The viewer of one or more movements, between which its reader can switch; each as [`super::scene::Scene::data`] gives it.
