@@ -4,9 +4,10 @@
 
 You have recorded the skin of a robot, and want to know which rigid parts the robot has, which sensor sits on which part, and which parts
 are joined. Call this script with your recording: the folder of a ROS 2 bag, a `.mcap` or `.bag` file, or a table such as a `.csv` file.
-Names of topics may follow.
+Names of topics may follow. In a clone of this repository, with Python 3.10 or newer:
 
-    python own_robot.py recording /skin/left /skin/right
+    pip install ".[examples]"
+    python python/examples/own_robot.py recording /skin/left /skin/right
 
 Without a recording, a simulated body stands in for the robot, and is recorded in a bag. ROS need not be installed: the package `rosbags`
 reads and writes bags without it.
@@ -79,8 +80,8 @@ def in_rows(topics):
 # %% [markdown]
 # ## A recording
 #
-# Record for as long as each joint makes about 100 movements, and drive joints at random, one against the other. Sensors must feel a
-# fluid or air: contact does not fit. Hold the robot still for the first seconds, which shows what each sensor reads at rest.
+# Record at least 10,000 samples, in which each joint makes about 100 movements; this example has half of both. Drive joints at random, one
+# against the other. Sensors must feel a fluid or air: contact does not fit.
 #
 # The simulated robot has a body with four arms. Its 200 sensors are wired in no order: 96 to each of two boards, and eight barometers with
 # topics of their own. Times are uneven by about a millisecond, one message in a hundred is lost, and barometers read the pressure
@@ -124,8 +125,9 @@ else:
     truth = moved.parts[order], moved.tree
 
 # %% [markdown]
-# Of a bag, what each sensor reads in the first 5 s is taken off: without movement, the pressure must be 0. `estimate` reads a table itself,
-# and the interval from its column of times.
+# Without movement, the pressure must be 0. So hold the robot still for the first 5 s of a bag: what each sensor reads then is taken off. Of a
+# table, take it off yourself; an offset can make the tree wrong with a good fit. `estimate` reads a table itself, and the interval from its
+# column of times.
 
 # %%
 if Path(recording).is_dir() or Path(recording).suffix in (".mcap", ".bag"):
