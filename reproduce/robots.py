@@ -239,11 +239,11 @@ def page(rows, design):
         "",
         "## How often is it right?",
         "",
-        "Robots whose import is refused are not counted, except in the last column. *Can be told* are robots without a joint that touch",
+        "Robots whose import is refused are not counted, except where they count *as wrong*. *Can be told* are robots without a joint that touch",
         "cannot tell ([below](#what-touch-cannot-tell)). The method was developed on those of *calibration*, and on none that is *held out*.",
         "In brackets: 95 % intervals (Wilson). Kinds and collections were chosen, so these are no random robots.",
         "",
-        "| movement | trees right, held out | can be told | refused ones as wrong | calibration |",
+        "| movement | trees right, held out | held out, can be told | held out, refused ones as wrong | calibration |",
         "|---|---|---|---|---|",
     ]
     for movement in (first, *others):
@@ -267,7 +267,8 @@ def page(rows, design):
         "",
         "## Robot by robot",
         "",
-        f"Wrong trees with {first} come first, by the adjusted Rand index. M is the number of sensors. A good fit does not mean a right tree.",
+        f"Wrong trees with {first} come first, by the adjusted Rand index. M is the number of sensors. A good fit does not mean a right tree."
+        + (" A dash was not run." if others else ""),
         "",
         f"| {' | '.join(['robot', 'kind', 'use', 'M', 'fit', 'true parts', 'found', 'adjusted Rand index', 'joints right', f'tree, {first}', *others])} |",
         "|" + "---|" * (10 + len(others)),
@@ -293,7 +294,7 @@ def page(rows, design):
         + (f" {faults['?']} were not looked into." if faults["?"] else ""),
         f"In {only} of the {len(wrong)}, all joints are right, and the only fault is that there are too many parts.",
         f"Reasons and faults were looked into at revision {design['looked_into']}, and counts in them are of it: the table above is newer,",
-        "and can differ. Those who changed the method after that revision may have read these reasons. No number of it was chosen on them.",
+        "and can differ. Those who changed the method after that revision may have read these reasons. No number of the method was chosen on robots that are held out.",
         "",
         "A sensor is *astray* if it is not on the found part that stands for its true part. It may feel nothing of a hinge: its normal is along",
         "the axis, or meets it. Then it *feels the same* on the next part, and touch cannot tell where it belongs. A tree can be right all",
