@@ -20,8 +20,8 @@ use crate::stages::tree::Edge;
 
 /// Samples that similarity is computed from, spread over all.
 const MAX_SAMPLES: usize = 2000;
-/// Information, in nats, that the tree must gain by merging a small part with another, so that the part is spurious; and against the whole by
-/// its pieces, for each further part that takes some. More pieces always gain something.
+/// Information, in nats, that the tree must gain by merging a small part with another, so that the part is spurious. It must gain as much again
+/// if pieces of it go to several parts instead, for each of these but one: more pieces always gain something.
 const SPURIOUS: f64 = 0.5;
 /// Rank from which on a part is no piece of another: a cylinder feels its motion but its spin.
 const WHOLE_RANK: usize = 5;
@@ -113,7 +113,7 @@ struct Assigned {
     names: Vec<usize>,
     /// Their motions, with those of their clusters.
     motions: Vec<MotionSubspace>,
-    /// What the tree says of joint speeds, in nats.
+    /// What the tree says of joint speeds, in nats; 0 if no cluster was unassigned.
     information: f64,
 }
 
@@ -212,7 +212,7 @@ impl<'a> Refinement<'a> {
         let of_pieces = self.assigned(&pieces);
         let takers: BTreeSet<usize> = own.iter().map(|&sensor| of_pieces.parts.labels[sensor]).collect();
         let least = SPURIOUS * (takers.len() as f64 - 1.0);
-        if takers.len() > 1 && of_pieces.information > of_whole.information + least {
+        if of_pieces.information > of_whole.information + least {
             (pieces, of_pieces)
         } else {
             (whole, of_whole)

@@ -8,8 +8,8 @@
 //! each face, as long as one motion explains it. The part that saves most is kept, and its faces are taken; and so on. The result counts
 //! if the description of all is shorter.
 //!
-//! Clusters may have taken the faces of a part so that what is left of it is in none. So groups of sensors in no cluster count as faces,
-//! too, and a sensor in none costs what it takes alone.
+//! Where clusters have taken faces of a part, the rest of it may be in none. At last, groups of sensors in no cluster count as faces, too. A
+//! sensor in none always costs what it takes alone.
 
 use rayon::prelude::*;
 
@@ -36,12 +36,12 @@ impl Search {
             clusters.par_iter().enumerate().flat_map_iter(faces).collect();
         let every = self.every();
         if self.rest_takes_part {
-            let mut rest = self.linked(&self.in_none(clusters), SEED_SENSORS[1]);
             // Any cluster explains a few sensors, and the end of a thin cylinder.
             let is_face = |own: &Vec<usize>| {
                 own.len() >= MIN_FACE && Cluster::new(&self.felt, own.clone()).rank() >= FACE_RANK
             };
-            rest.retain(is_face);
+            let rest = self.linked(&self.in_none(clusters), SEED_SENSORS[1]);
+            let rest: Vec<Vec<usize>> = rest.into_par_iter().filter(is_face).collect();
             faces.extend((clusters.len()..).zip(rest));
         }
         let mut faces = Faces::new(self, faces);

@@ -26,7 +26,11 @@ impl Search {
             if own.sensors.len() < members.len() { Cluster::new(felt, members) } else { own }
         };
         let clusters: Vec<Cluster> = both.map(larger).collect();
+        // Those that none joined have learned their motions anew, too.
         clusters.iter().for_each(|own| own.complete_roots(&mut self.felt));
         clusters
     }
 }
+
+#[cfg(test)]
+mod tests;

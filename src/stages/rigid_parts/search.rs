@@ -49,8 +49,8 @@ pub(super) struct Search {
     /// Whether the model has no error that counts, however fast parts move. There may be noise. A [separation](super::separation) finds it
     /// out.
     pub(super) has_exact_model: bool,
-    /// Whether sensors in no cluster may change clusters. Not before these are of one part each: what two parts in one cluster explain of
-    /// others says little.
+    /// Whether sensors in no cluster may change clusters. They may not while clusters can still be of two parts each: what such a cluster
+    /// explains of other sensors says little.
     pub(super) rest_takes_part: bool,
     /// Groups that were tried elsewhere, and clusters that were to be dispersed, without success: first its sensors, then those of the
     /// clusters around it. They are not tried again as long as these are the same.
@@ -70,12 +70,21 @@ impl Search {
         if let Some(separated) = self.separated(&clusters) {
             return separated;
         }
-        if !self.in_none(&clusters).is_empty() {
-            self.rest_takes_part = true;
-            clusters = self.settled(clusters);
+        self.rest_takes_part = true;
+        if let Some(changed) = self.changed_by_rest(&clusters) {
+            clusters = self.settled(changed);
         }
         clusters.par_iter_mut().for_each(|own| own.learn_with_least_rank(&self.felt));
         clusters
+    }
+
+    /// The clusters as sensors in none change them, if they do.
+    fn changed_by_rest(&mut self, clusters: &[Cluster]) -> Option<Vec<Cluster>> {
+        let more = self.with_rest(clusters.to_vec());
+        if more.iter().zip(clusters).any(|(own, before)| own.sensors != before.sensors) {
+            return Some(more);
+        }
+        self.regrouped(clusters)
     }
 
     /// Alternates moves of sensors with regrouping of faces, as long as anything changes.

@@ -20,8 +20,9 @@ impl Search {
         found
     }
 
-    /// The pieces of a cluster, if two of them have nothing in common: faces of two parts, say, of rank three each. But two faces of one part
-    /// may be linked by a third only, which neither explains: then the description of all is longer.
+    /// The pieces of a cluster, if two of them have nothing in common: faces of two parts, say, of rank three each. But only a third face may
+    /// link two of one part, and neither explains it. Then the pieces, and the sensors that are left alone, take longer to describe than the
+    /// cluster, and it stays.
     fn split_once(&mut self, cluster: &Cluster) -> Option<Vec<Cluster>> {
         let most = (PIECE * cluster.sensors.len() as f64) as usize;
         let mut seeds = self.seeds(&cluster.sensors, most);
@@ -34,10 +35,11 @@ impl Search {
         if saving > MIN_SAVING {
             return None;
         }
-        let pieces = self.assigned(pieces, &cluster.sensors);
         let length = self.learned(cluster.sensors.clone()).description_length;
+        let before = self.felt.completed.clone();
+        let pieces = self.assigned(pieces, &cluster.sensors);
         if self.length_of(&pieces, &cluster.sensors) - length > MIN_SAVING {
-            cluster.complete_roots(&mut self.felt);
+            self.felt.completed = before;
             return None;
         }
         Some(pieces)

@@ -6,10 +6,15 @@ use super::super::testing::{hinged_boxes, pair, pairs};
 use super::*;
 use crate::numerics::rng::stream;
 
-/// The sensors of clusters after they were regrouped, if they were.
+/// The sensors of clusters after they were regrouped, if they were; with those in none.
 fn regrouped(clusters: &[&[(usize, usize)]]) -> Option<Vec<Vec<usize>>> {
+    regrouped_with(true, clusters)
+}
+
+/// The same, with sensors in none or without.
+fn regrouped_with(rest: bool, clusters: &[&[(usize, usize)]]) -> Option<Vec<Vec<usize>>> {
     let mut search = hinged_boxes(6);
-    search.rest_takes_part = true;
+    search.rest_takes_part = rest;
     let clusters: Vec<Cluster> = clusters.iter().map(|own| Cluster::new(&search.felt, pairs(own))).collect();
     let found = search.regrouped(&clusters)?;
     let mut found: Vec<Vec<usize>> = found.into_iter().map(|own| own.sensors).collect();
@@ -36,6 +41,8 @@ fn a_box_whose_faces_are_in_no_cluster_is_found() {
     // It has no face in a cluster at all.
     let found = regrouped(&[&[(0, 0), (0, 1), (0, 2)]]);
     assert_eq!(found, Some(boxes));
+    // Before sensors in none take part, it is not.
+    assert_eq!(regrouped_with(false, &[&[(0, 0), (0, 1), (0, 2)]]), None);
 }
 
 #[test]

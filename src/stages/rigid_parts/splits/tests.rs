@@ -24,3 +24,13 @@ fn faces_that_only_a_third_one_links_stay() {
     assert_eq!(split(5, own.clone()), [own]);
     assert_eq!(split(5, pairs(&[(0, 0), (0, 1)])), [pair(0, 0), pair(0, 1)]);
 }
+
+#[test]
+fn a_cluster_that_stays_leaves_no_trace() {
+    let mut search = hinged_boxes(5);
+    let own = [pairs(&[(0, 0), (0, 1)]), pair(0, 2)[..8].to_vec()].concat();
+    let before = search.felt.completed.clone();
+    let cluster = Cluster::new(&search.felt, own);
+    assert_eq!(search.split(vec![cluster]).len(), 1);
+    assert_eq!(search.felt.completed, before);
+}
