@@ -66,8 +66,8 @@ CONDITIONS = {
     "a stretch of 20 % of each sensor": stretches(0.2),
     "a stretch of 20 % of one part": limb(0.2),
     "the largest 2 % of each sensor cut": saturated(0.02),
-    "noise of a tenth, no gaps": with_noise(lambda x, labels, random: x),
-    "noise of a tenth, 20 % scattered": with_noise(scattered(0.2)),
+    "noise of 10 %, no gaps": with_noise(lambda x, labels, random: x),
+    "noise of 10 %, 20 % scattered": with_noise(scattered(0.2)),
 }
 
 

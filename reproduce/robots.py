@@ -275,9 +275,8 @@ def page(rows, design):
     ]
     done = [row for row in rows if row["movement"] == first and not row["refused"]]
     for row in sorted(done, key=lambda row: (row["tree_right"], float(row["ari"]))):
-        trees = [row, *(of(row["robot"], movement) for movement in others)]
         cells = [row["robot"], row["kind"], row["use"], f"{int(row['sensors']):,}", row["fit"], row["true_parts"], row["parts"], row["ari"],
-                 f"{row['joints_right']} of {row['true_joints']}", *map(tree, trees)]
+                 f"{row['joints_right']} of {row['true_joints']}", right_or_wrong(row), *(tree(of(row["robot"], movement)) for movement in others)]
         lines.append("| " + " | ".join(cells) + " |")
     unresolved = [f"{row['robot']} ({row['movement']})" for row in rows if row["resolved"] == "false"]
     if unresolved:
@@ -328,7 +327,12 @@ def page(rows, design):
     return "\n".join(lines) + "\n"
 
 
+def right_or_wrong(row):
+    return "right" if row["tree_right"] == "true" else "wrong"
+
+
 def tree(row):
+    """Whether a tree is right, with the adjusted Rand index of the parts if it is not: in a table that has it of another movement."""
     if row is None:
         return "–"
     return "right" if row["tree_right"] == "true" else f"wrong ({row['ari']})"

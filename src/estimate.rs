@@ -32,12 +32,14 @@
 //! ```
 
 mod novelty;
+mod offset;
 mod repeats;
 
 use std::fmt;
 
 use rand::Rng;
 
+use self::offset::has_offset;
 pub use self::repeats::{Repeats, repeats};
 use crate::recording::Recording;
 use crate::stages::distance::{Distances, information_metric};
@@ -76,7 +78,7 @@ pub enum Verdict {
     Good,
     /// They explain at least 65 % of the sensors.
     Doubtful,
-    /// They explain fewer, or the movement repeats itself: parts and tree mean nothing.
+    /// They explain fewer, sensors do not read 0 at rest, or the movement repeats itself: parts and tree mean nothing.
     DoesNotFit,
 }
 
@@ -115,15 +117,17 @@ impl Fit {
         let count =
             own.filter(|(label, residual)| !parts.unassigned.contains(label) && **residual <= most).count();
         let explained = count as f64 / parts.labels.len() as f64;
+        let has_offset = has_offset(&recording.tactile, recording.signed);
         let repeats_itself = comes_back && novelty < LOOP;
         let verdict = match explained {
-            _ if repeats_itself => Verdict::DoesNotFit,
+            _ if has_offset || repeats_itself => Verdict::DoesNotFit,
             share if share >= GOOD && recording.tactile.samples >= SHORT && !comes_back => Verdict::Good,
             share if share >= DOUBTFUL => Verdict::Doubtful,
             _ => Verdict::DoesNotFit,
         };
         let cause = match verdict {
             Verdict::Good => None,
+            _ if has_offset => Some(OFFSET),
             _ if repeats_itself => Some(REPETITION),
             _ if explained >= GOOD && comes_back => Some(SIMILARITY),
             _ => Some(cause(&recording.tactile, is_noisy)),
@@ -199,6 +203,9 @@ pub fn estimate(
     tick();
     Ok(Estimate { fit, parts, joints, mapped: sensors, distances })
 }
+
+/// What is the matter if sensors do not read 0 at rest.
+const OFFSET: &str = "sensors do not read 0 at rest, so that their reading there must be subtracted, or a speed has lost its sign";
 
 /// What is the matter if all joints keep step in one rhythm.
 const REPETITION: &str = "the movement repeats itself, so that parts that keep step cannot be told apart";

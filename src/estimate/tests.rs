@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 use super::*;
 
 #[test]
-fn a_short_recording_is_doubtful_and_one_that_repeats_does_not_fit_however_much_is_explained() {
-    let fit = |samples: usize, novelty: f64| {
-        let pressures = (0..12 * samples).map(|at| (at % 7) as f32).collect();
+fn whatever_is_explained_a_short_recording_is_doubtful_and_one_that_repeats_or_has_an_offset_does_not_fit() {
+    let with_rest = |rest: f32, samples: usize, novelty: f64| {
+        let pressures = (0..12 * samples).map(|at| rest + (at % 7) as f32).collect();
         let recording = Recording::new(Tactile { samples, pressures });
         let parts = RigidParts {
             labels: vec![0; 12],
@@ -18,6 +18,7 @@ fn a_short_recording_is_doubtful_and_one_that_repeats_does_not_fit_however_much_
         };
         Fit::new(&parts, &recording, novelty, novelty < SIMILAR)
     };
+    let fit = |samples: usize, novelty: f64| with_rest(0.0, samples, novelty);
     assert_eq!(fit(SHORT, 0.1).verdict, Verdict::Good);
     assert_eq!((fit(SHORT, 1e-4).verdict, fit(SHORT, 1e-4).cause), (Verdict::DoesNotFit, Some(REPETITION)));
     let similar = fit(SHORT, 0.01);
@@ -25,6 +26,11 @@ fn a_short_recording_is_doubtful_and_one_that_repeats_does_not_fit_however_much_
     let short = fit(SHORT - 1, 0.1);
     assert_eq!((short.verdict, short.explained), (Verdict::Doubtful, 1.0));
     assert!(short.cause.is_some());
+    // Readings at rest are above 0, however little.
+    for novelty in [0.1, 1e-4] {
+        let offset = with_rest(0.01, SHORT, novelty);
+        assert_eq!((offset.verdict, offset.cause), (Verdict::DoesNotFit, Some(OFFSET)));
+    }
 }
 
 #[test]
