@@ -126,8 +126,8 @@ else:
 
 # %% [markdown]
 # Without movement, the pressure must be 0. So hold the robot still for the first 5 s of a bag: what each sensor reads then is taken off. Of a
-# table, take it off yourself; an offset can make the tree wrong with a good fit. `estimate` reads a table itself, and the interval from its
-# column of times.
+# table, take it off yourself; an offset makes parts and tree wrong. `estimate` reads a table itself, and the interval from its column of
+# times.
 
 # %%
 if Path(recording).is_dir() or Path(recording).suffix in (".mcap", ".bag"):
