@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Write a made walk as a BVH file: python3 reproduce/walk.py [FILE]
 
-A person walks for a minute, at 25 frames a second. Legs, arms and trunk follow the harmonics of a gait. Each angle wanders slowly, too, so
+A person walks for 40 seconds, at 25 frames a second. Legs, arms and trunk follow the harmonics of a gait. Each angle wanders slowly, too, so
 no step is like another. Nothing is measured: angles are of the size that textbooks of gait show. Wrists never move. Lengths are in cm,
 angles in degrees; x points to the left, y up, and z forward. Without FILE, this writes python/examples/walk.bvh, the same at each call.
 """
@@ -11,7 +11,7 @@ import pathlib
 import random
 import sys
 
-FRAMES, RATE = 1500, 25
+FRAMES, RATE = 1001, 25
 HERE = pathlib.Path(__file__).resolve().parent
 # What carries each joint, its place on that, and the end of its last bone. The order is that of the file.
 SIDED = [

@@ -128,7 +128,7 @@ plt.show()
 # %% [markdown]
 # The remedy is a longer and more varied movement, in which each sensor moves outward often.
 #
-# This walk is no test of the method: we made three, and show the one whose tree is right. In the other two, most angles wandered about
-# half to two thirds as far. With an earlier search, one foot of the first was taken for two parts, and the legs for parts on the chest. In
-# the second, the person also stepped back at times, and 51 sensors of chest and hips came out as a part of their own.
+# This walk is no test of the method: we made three of a minute, and show 40 s of the one whose tree is right. In the other two, most angles
+# wandered about half to two thirds as far. With an earlier search, one foot of the first was taken for two parts, and the legs for parts on
+# the chest. In the second, the person also stepped back at times, and 51 sensors of chest and hips came out as a part of their own.
 # [Recordings that were held out](../../docs/own-data.md#recorded-movements) are a test.
