@@ -37,16 +37,19 @@ impl Search {
     pub(super) fn separated(&mut self, clusters: &[Cluster]) -> Option<Vec<Cluster>> {
         let before = (self.felt.tolerance, self.felt.iterations);
         let (mut last, mut found) = (before, None::<Vec<Cluster>>);
+        let mut some_leave_much = false;
         for (at, level) in LEVELS.into_iter().enumerate() {
             (self.felt.tolerance, self.felt.iterations) = level;
             let learned = |own: &Cluster| Cluster::learned_longer(&self.felt, own.sensors.clone());
             let start: Vec<Cluster> = found.as_deref().unwrap_or(clusters).par_iter().map(learned).collect();
             if at == 0 {
-                self.has_exact_model = self.are_clear(&start);
+                let [nothing, much, told] = self.left_by(&start);
+                self.has_exact_model = told > 0 && 2 * (nothing + much) >= told;
+                some_leave_much = much > 0;
             } else if !quarter_leaves_nothing(&start) {
                 break;
             }
-            if self.nothing_is_left_to_separate(&start) {
+            if self.nothing_is_left_to_separate(&start, some_leave_much) {
                 if self.has_exact_model {
                     continue;
                 }
@@ -101,25 +104,27 @@ impl Search {
         Some(found)
     }
 
-    /// Whether most clusters are clear: of one part, which leaves nothing, or of several, which leave much, at all speeds. If the model
-    /// has an error, a part leaves something between, which vanishes in slow samples. With noise no piece will be exact.
-    fn are_clear(&self, clusters: &[Cluster]) -> bool {
+    /// How many of the clusters that can be told are of one part, which leaves nothing, how many of several, which leave much, at all
+    /// speeds, and how many can be told. If most are one or the other, the model is exact. If it has an error, a part leaves something
+    /// between, which vanishes in slow samples. With noise no piece will be exact.
+    fn left_by(&self, clusters: &[Cluster]) -> [usize; 3] {
         let told = told(clusters);
-        let is_clear = |own: &&&Cluster| {
-            own.variance() <= NOTHING
-                || !self.is_exact(own) && slow_share(&self.felt, &own.representatives) >= VANISHING
+        let leaves_nothing = |own: &&&Cluster| own.variance() <= NOTHING;
+        let leaves_much = |own: &&&Cluster| {
+            !self.is_exact(own) && slow_share(&self.felt, &own.representatives) >= VANISHING
         };
-        !told.is_empty() && 2 * told.par_iter().filter(is_clear).count() >= told.len()
+        [told.iter().filter(leaves_nothing).count(), told.par_iter().filter(leaves_much).count(), told.len()]
     }
 
-    /// Whether all clusters are settled. Without an exact model nothing is left either if none is: nothing then shows what a part leaves.
-    fn nothing_is_left_to_separate(&self, clusters: &[Cluster]) -> bool {
+    /// Whether all clusters are settled. Without an exact model nothing is left either if none is, and none leaves much: nothing then
+    /// shows which are of several parts.
+    fn nothing_is_left_to_separate(&self, clusters: &[Cluster], some_leave_much: bool) -> bool {
         if self.has_exact_model {
             return clusters.iter().all(|own| self.is_exact(own));
         }
         let told = told(clusters);
         let settled = told.par_iter().filter(|own| self.is_settled(own)).count();
-        settled == 0 || settled == told.len()
+        settled == told.len() || settled == 0 && !some_leave_much
     }
 
     /// Whether a cluster is of one part: it is exact, or the model is not, and what it leaves is an error of the model.
