@@ -14,8 +14,9 @@ use bodyschema::stages::simulate::simulate;
 use rand_distr::{Distribution, StandardNormal};
 
 use crate::support::folder::Folder;
-use crate::support::repository::{entries, read, repository};
+use crate::support::repository::{entries, repository};
 use crate::support::said::Said;
+use crate::support::small::small_chain;
 
 fn bodies() -> Vec<(PathBuf, NamedBody)> {
     entries("bodies").into_iter().map(|path| (path.clone(), read_body(&path).unwrap())).collect()
@@ -89,8 +90,7 @@ fn noise_costs_fewer_parts_if_it_counts_as_no_touch() {
 #[test]
 fn the_study_of_bodies_repeats_itself_and_names_mistakes() {
     let folder = Folder::new();
-    // Half of its sensors, which take less than half of the time.
-    let chain = read("bodies/chain-3.toml").replace("sensors = 40", "sensors = 20");
+    let chain = small_chain();
     folder.write("chain-3.toml", &chain);
     let design = |coordinations: &str| {
         format!(

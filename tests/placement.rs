@@ -1,20 +1,22 @@
 //! Estimated parts and joints as a robot description: `estimate --sensors` writes it, and `body import` reads it back.
 
 use std::fmt::Write;
-use std::path::Path;
 
 use bodyschema::files::body::read_body;
 
 use crate::support::folder::Folder;
+use crate::support::repository::{read, repository};
+use crate::support::small::small_chain;
 
-const STAR: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/bodies/star.toml");
+const STAR: &str = "bodies/star.toml";
 
-/// A folder in which a star has moved for 300 s; `rest.csv` has the sites of its sensors at rest.
-fn moved() -> Folder {
+/// A folder in which a body has moved for 300 s; `rest.csv` has the sites of its sensors at rest.
+fn moved(body: &str) -> Folder {
     let folder = Folder::new();
+    folder.write("body.toml", body);
     folder.write("short.toml", "[physics]\nduration = 300.0\n[motion]\ncoordination = 0.5\n");
-    folder.succeed(&format!("simulate --body {STAR} --settings short.toml --seed 3 --out star"));
-    let agent = read_body(Path::new(STAR)).unwrap().agent;
+    folder.succeed("simulate --body body.toml --settings short.toml --seed 3 --out moved");
+    let agent = read_body(&folder.at("body.toml")).unwrap().agent;
     let mut rest = "x,y,z,nx,ny,nz\n".to_owned();
     for site in &agent.sites {
         let part = &agent.parts[site.part];
@@ -42,11 +44,11 @@ fn places(folder: &Folder) -> Vec<impl Fn(&str) -> f64> {
 
 #[test]
 fn joints_are_placed_by_sensors_at_rest_and_the_description_is_read_back() {
-    let folder = moved();
-    let said = folder.succeed("estimate star/tactile.npy --sensors rest.csv --out found");
+    let folder = moved(&read(STAR));
+    let said = folder.succeed("estimate moved/tactile.npy --sensors rest.csv --out found");
     assert!(said.contains("body.urdf: 5 boxes; the place of 4 of 4 joints is known from touch"), "{said}");
     let anchors: Vec<[f64; 3]> =
-        read_body(Path::new(STAR)).unwrap().agent.joints.iter().map(|joint| joint.anchor).collect();
+        read_body(&repository(STAR)).unwrap().agent.joints.iter().map(|joint| joint.anchor).collect();
     for place in places(&folder) {
         let found = ["x", "y", "z"].map(|axis| place(&format!("parent_{axis}_m")));
         let off = |anchor: &[f64; 3]| (0..3).map(|at| (anchor[at] - found[at]).powi(2)).sum::<f64>().sqrt();
@@ -56,28 +58,35 @@ fn joints_are_placed_by_sensors_at_rest_and_the_description_is_read_back() {
     }
     let said = folder.run("body import found/body.urdf --out back.toml");
     assert!(said.status == Some(0) && said.out.contains("4 ball"), "{said:?}");
-    let [back, star] = [&folder.at("back.toml"), Path::new(STAR)].map(|file| read_body(file).unwrap().agent);
+    let [back, star] = [folder.at("back.toml"), repository(STAR)].map(|file| read_body(&file).unwrap().agent);
     let lengths = |agent: &bodyschema::stages::agent::Agent| agent.joints.len();
     assert_eq!(lengths(&back), lengths(&star));
+}
+
+#[test]
+fn a_description_of_others_stays_and_an_own_one_goes_with_the_sites() {
+    let folder = moved(&small_chain());
+    folder.succeed("estimate moved/tactile.npy --sensors rest.csv --out found");
+    assert!(folder.at("found/body.urdf").exists() && folder.at("found/places.csv").exists());
 
     // Files of others with these names stay, and are not overwritten.
     folder.write("own/body.urdf", "<robot/>");
-    folder.succeed("estimate star/tactile.npy --out own");
+    folder.succeed("estimate moved/tactile.npy --out own");
     folder.refuse(
-        "estimate star/tactile.npy --sensors rest.csv --out own",
+        "estimate moved/tactile.npy --sensors rest.csv --out own",
         "own/body.urdf: is not one that `estimate` wrote",
     );
     assert_eq!(folder.text("own/body.urdf"), "<robot/>");
 
     // Without sites, those of before are gone.
-    folder.succeed("estimate star/tactile.npy --out found");
+    folder.succeed("estimate moved/tactile.npy --out found");
     assert!(!folder.at("found/body.urdf").exists() && !folder.at("found/places.csv").exists());
 }
 
 #[test]
 fn sensors_in_the_frames_of_their_own_solids_place_joints_in_both_frames() {
-    let folder = moved();
-    folder.succeed("estimate star/tactile.npy --sensors star/sensors.csv --out found");
+    let folder = moved(&read(STAR));
+    folder.succeed("estimate moved/tactile.npy --sensors moved/sensors.csv --out found");
     for place in places(&folder) {
         // The z axis of a limb's frame runs along it, and its joint is 0.05 m before its end.
         assert!((place("child_z_m").abs() - 0.3).abs() < 0.03 && place("child_x_m").abs() < 0.03);
@@ -87,12 +96,12 @@ fn sensors_in_the_frames_of_their_own_solids_place_joints_in_both_frames() {
 
 #[test]
 fn mistakes_in_the_sites_of_sensors_are_named_before_anything_is_written() {
-    let folder = moved();
+    let folder = moved(&small_chain());
     let rest = folder.text("rest.csv");
     let (head, rows) = rest.split_once('\n').unwrap();
     let fewer = rest.trim_end().rsplit_once('\n').unwrap().0;
     for (sites, expected) in [
-        (fewer.to_owned(), "fewer.csv: has 199 sensors, but the recording has 200"),
+        (fewer.to_owned(), "fewer.csv: has 59 sensors, but the recording has 60"),
         (
             format!("{head}\n0,0,0,0,0,0\n{rows}"),
             "fewer.csv: line 2: the normal of sensor 0 has no direction",
@@ -100,7 +109,7 @@ fn mistakes_in_the_sites_of_sensors_are_named_before_anything_is_written() {
         (rest.replace("nx", "up"), "missing field `normal_x`"),
     ] {
         folder.write("fewer.csv", sites);
-        let said = folder.run("estimate star/tactile.npy --sensors fewer.csv --out found");
+        let said = folder.run("estimate moved/tactile.npy --sensors fewer.csv --out found");
         assert!(
             said.status == Some(2) && said.err.contains(expected) && said.err.lines().count() == 1,
             "{said:?}"
@@ -111,6 +120,6 @@ fn mistakes_in_the_sites_of_sensors_are_named_before_anything_is_written() {
     let rows: Vec<&str> = rows.lines().collect();
     let mixed: Vec<&str> = (0..rows.len()).map(|at| rows[7 * at % rows.len()]).collect();
     folder.write("mixed.csv", format!("{head}\n{}\n", mixed.join("\n")));
-    let said = folder.succeed("estimate star/tactile.npy --sensors mixed.csv --out found");
+    let said = folder.succeed("estimate moved/tactile.npy --sensors mixed.csv --out found");
     assert!(said.contains("are rows in the order of the sensors"), "{said}");
 }

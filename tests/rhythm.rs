@@ -15,6 +15,9 @@ use bodyschema::stages::sense::sense;
 use bodyschema::stages::simulate::{Controller, Movement, Targets, Trajectory, simulate};
 use rayon::prelude::*;
 
+use crate::support::folder::Folder;
+use crate::support::small::small_chain;
+
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
@@ -166,7 +169,9 @@ fn the_spectrum_of_a_wandering_rhythm_lies_about_its_frequency() {
 
 /// What `estimate` says of a movement of three parts of 1,000 s.
 fn verdict(settings: &Settings) -> Fit {
-    let agent = read_body(&root().join("bodies/chain-3.toml")).unwrap().agent;
+    let folder = Folder::new();
+    folder.write("chain.toml", small_chain());
+    let agent = read_body(&folder.at("chain.toml")).unwrap().agent;
     let tactile = sense(&agent, &moved(&agent, settings, 1), &settings.sense);
     let levels = Settings::load_over(Some(Base::ESTIMATE), None).unwrap().quantise;
     estimate(&Recording::new(tactile), &levels, &mut stream(1, 1, "co-motion", 0), &|| ()).unwrap().fit

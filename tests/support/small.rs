@@ -5,6 +5,7 @@ use bodyschema::stages::body_map::BodyMap;
 use toml::{Table, Value};
 
 use super::folder::Folder;
+use super::repository::read;
 
 /// A body of five parts of 24 sensors, which still shows them after 1000 s, for experiments of a second or two.
 const SMALL: &str = "
@@ -30,6 +31,14 @@ pub fn small(over: &str) -> String {
         own.as_table_mut().unwrap().extend(values.as_table().unwrap().clone());
     }
     settings.to_string()
+}
+
+/// The text of a body file: a chain of three parts with half of its sensors, 20 on each. It is estimated in less than half of the time.
+pub fn small_chain() -> String {
+    let chain = read("bodies/chain-3.toml");
+    let small = chain.replace("sensors = 40", "sensors = 20");
+    assert!(small != chain, "it has 40 sensors on each part");
+    small
 }
 
 /// Five Gaussian clusters in a row, far apart, so that any working sampler finds them: `clusters.npy`, `labels.csv`, `tree.csv`.
