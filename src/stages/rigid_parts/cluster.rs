@@ -12,6 +12,7 @@ use super::als::Als;
 use super::factorisation::{MAX_RANK, principal_axes};
 use super::loadings::{components, leverages, solved, whitened};
 use super::log_determinant::log_determinant;
+use super::memory::{Memory, key};
 use super::roots::{Roots, columns, product};
 use super::stratified::stratified;
 
@@ -50,6 +51,19 @@ pub(super) struct Felt {
     pub tolerance: f64,
     /// Iterations in which the motion of a cluster is learned, and more where it is in doubt whether one motion explains it.
     pub iterations: [usize; 2],
+    /// Motions that were learned.
+    pub memory: Memory<Learned>,
+}
+
+/// What is learned of a cluster, but for what completes its roots, which follows.
+#[derive(Clone)]
+pub(super) struct Learned {
+    loadings: Mat<f64>,
+    motion: Mat<f64>,
+    components: Vec<f64>,
+    residual: f64,
+    freedom: f64,
+    description_length: f64,
 }
 
 /// A cluster of sensors.
@@ -255,9 +269,37 @@ impl Cluster {
         residuals.into_iter().enumerate().map(share).collect()
     }
 
-    /// Alternates least squares with momentum, which is lost when the residual grows.
+    /// Learns the motion in so many iterations from what it is, or remembers what that gave.
     fn learn(&mut self, felt: &Felt, iterations: usize, weight: f64) {
         let own = felt.roots.select_as_they_are(&self.representatives);
+        let numbers = [felt.tolerance, weight, iterations as f64, self.sensors.len() as f64];
+        let key = key(
+            &[&numbers, own.thresholds.as_slice()].concat(),
+            &[&own.values, &self.completed, &self.loadings, &self.motion],
+        );
+        if let Some(known) = felt.memory.get(key) {
+            let Learned { loadings, motion, components, residual, freedom, description_length } =
+                (*known).clone();
+            Als::new(own.values.as_ref(), &own.thresholds).complete(
+                loadings.as_ref(),
+                &motion,
+                &mut self.completed,
+            );
+            (self.loadings, self.motion, self.components) = (loadings, motion, components);
+            (self.residual, self.freedom) = (residual, freedom);
+            self.description_length = description_length;
+        } else if self.alternate(&own, felt.tolerance, iterations, weight) {
+            let (loadings, motion) = (self.loadings.clone(), self.motion.clone());
+            let components = self.components.clone();
+            let Self { residual, freedom, description_length, .. } = *self;
+            felt.memory
+                .add(key, Learned { loadings, motion, components, residual, freedom, description_length });
+        }
+    }
+
+    /// Alternates least squares with momentum, which is lost when the residual grows. Returns whether all iterations were made, so that the
+    /// last motion completes the roots.
+    fn alternate(&mut self, own: &Roots, tolerance: f64, iterations: usize, weight: f64) -> bool {
         let (values, thresholds) = (own.values.as_ref(), &own.thresholds);
         let plain = Als::new(values, thresholds);
         let Self { loadings, motion, completed, .. } = self;
@@ -266,13 +308,15 @@ impl Cluster {
             .update_motion(loadings.as_ref(), motion);
         let mut last = loadings.clone();
         let (mut momentum, mut before) = (MOMENTUM[0], f64::INFINITY);
+        let mut is_whole = true;
         for iteration in 0..iterations {
             let als = Als::new(values, thresholds).with_completed(completed.as_ref(), weight);
             let mut next = loadings.clone();
             als.update_loadings(next.as_mut(), motion);
             let [residual, freedom] = plain.residual(next.as_ref(), motion);
-            if felt.tolerance < LEAST_TOLERANCE && residual <= ROUNDING * freedom {
+            if tolerance < LEAST_TOLERANCE && residual <= ROUNDING * freedom {
                 *loadings = next;
+                is_whole = false;
                 break;
             }
             let mut step = 0.0;
@@ -293,7 +337,8 @@ impl Cluster {
         let [residual, freedom] = plain.residual(loadings.as_ref(), motion);
         let whitened = whitened(loadings, motion);
         (self.residual, self.freedom, self.components) = (residual, freedom, components(&whitened));
-        self.description_length = self.description_length(&own, &whitened, felt.tolerance);
+        self.description_length = self.description_length(own, &whitened, tolerance);
+        is_whole
     }
 
     /// In: the roots of the representatives, and their c for which each component of w has a variance of 1.

@@ -36,12 +36,14 @@ fn halves(felt: &Felt, sensors: &[usize]) -> [Felt; 2] {
         let of = |numbers: &[f64]| samples.iter().map(|&t| numbers[t]).collect();
         let roots =
             Roots { values: at(&own), thresholds: of(&felt.roots.thresholds), signed: felt.roots.signed };
-        Felt { roots, completed: at(&completed), sizes: of(&felt.sizes), ..*felt }
+        let memory = felt.memory.clone();
+        Felt { roots, completed: at(&completed), sizes: of(&felt.sizes), memory, ..*felt }
     })
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::memory::Memory;
     use super::*;
 
     #[test]
@@ -50,8 +52,14 @@ mod tests {
         let values = Mat::from_fn(4, 3, |t, sensor| if sensor == 0 { 9.0 } else { [2.0, 4.0, 1.0, 3.0][t] });
         let roots = Roots { values, thresholds: vec![0.1, 0.2, 0.3, 0.4], signed: false };
         let completed = Mat::from_fn(4, 3, |t, sensor| (10 * t + sensor) as f64);
-        let felt =
-            Felt { roots, completed, sizes: vec![1.0, 3.0, 1.0, 1.0], tolerance: 1e-3, iterations: [1, 2] };
+        let felt = Felt {
+            roots,
+            completed,
+            sizes: vec![1.0, 3.0, 1.0, 1.0],
+            tolerance: 1e-3,
+            iterations: [1, 2],
+            memory: Memory::default(),
+        };
         let [slow, fast] = halves(&felt, &[1, 2]);
         assert_eq!(slow.roots.values, Mat::from_fn(2, 2, |t, _| [2.0, 1.0][t]));
         assert_eq!(slow.roots.thresholds, [0.1, 0.3]);

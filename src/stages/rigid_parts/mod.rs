@@ -26,6 +26,7 @@ mod halves;
 mod loadings;
 mod log_determinant;
 mod medians;
+mod memory;
 mod moves;
 mod parts;
 mod pieces;

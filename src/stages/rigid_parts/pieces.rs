@@ -39,7 +39,13 @@ pub(super) fn pieces(felt: &Felt, sensors: &[usize]) -> (Vec<Cluster>, Vec<usize
 fn pieces_once(outer: &Felt, sensors: &[usize]) -> (Vec<Vec<usize>>, Vec<usize>) {
     let roots = outer.roots.select_as_they_are(sensors);
     let completion = Completion::new(&roots);
-    let felt = Felt { roots, completed: completion.velocities, sizes: outer.sizes.clone(), ..*outer };
+    let felt = Felt {
+        roots,
+        completed: completion.velocities,
+        sizes: outer.sizes.clone(),
+        memory: outer.memory.clone(),
+        ..*outer
+    };
     let limit = EXPLAINED * felt.tolerance;
     let whole = Cluster::learned_longer(&felt, (0..sensors.len()).collect());
     if whole.variance() <= limit {

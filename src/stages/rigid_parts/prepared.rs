@@ -4,6 +4,7 @@
 use super::cluster::{Cluster, Felt, ITERATIONS};
 use super::completion::Completion;
 use super::floor::{floors, telling_samples, typical_floor};
+use super::memory::Memory;
 use super::roots::Roots;
 use super::search::Search;
 use super::subspace::{Loadings, MotionSubspace};
@@ -53,6 +54,7 @@ impl<'a> Prepared<'a> {
             sizes: self.sizes.clone(),
             tolerance: 0.0,
             iterations: ITERATIONS,
+            memory: Memory::default(),
         };
         Search::new(felt, affinities)
     }

@@ -5,6 +5,7 @@ use rand::RngExt;
 
 use super::cluster::{Felt, ITERATIONS, LEAST_TOLERANCE};
 use super::completion::Completion;
+use super::memory::Memory;
 use super::roots::{Roots, product};
 use super::search::Search;
 use crate::numerics::rng::stream;
@@ -24,7 +25,9 @@ pub(super) fn felt_of(velocities: &Mat<f64>) -> (Felt, Mat<f64>) {
     let roots = roots.scaled(&scales).equalised(&sizes, 0.0);
     let completion = Completion::new(&roots);
     let (completed, iterations) = (completion.velocities, ITERATIONS);
-    (Felt { roots, completed, sizes, tolerance: LEAST_TOLERANCE, iterations }, completion.affinities)
+    let memory = Memory::default();
+    let felt = Felt { roots, completed, sizes, tolerance: LEAST_TOLERANCE, iterations, memory };
+    (felt, completion.affinities)
 }
 
 /// The sensors of the faces of a box whose normals lie along an axis. The hinge lies along axis 0.

@@ -5,6 +5,7 @@ use rand::RngExt;
 
 use super::super::cluster::Felt;
 use super::super::completion::Completion;
+use super::super::memory::Memory;
 use super::super::roots::{Roots, product};
 use super::*;
 use crate::numerics::rng::stream;
@@ -34,8 +35,15 @@ fn felt() -> Search {
     let sizes = vec![1.0; 600];
     let roots = Roots { values, thresholds: sizes.clone(), signed: false }.equalised(&sizes, 0.0);
     let completion = Completion::new(&roots);
-    let felt =
-        Felt { roots, completed: completion.velocities, sizes, tolerance: 2e-8, iterations: [24, 300] };
+    let memory = Memory::default();
+    let felt = Felt {
+        roots,
+        completed: completion.velocities,
+        sizes,
+        tolerance: 2e-8,
+        iterations: [24, 300],
+        memory,
+    };
     let mut search = Search::new(felt, completion.affinities);
     search.has_exact_model = true;
     search

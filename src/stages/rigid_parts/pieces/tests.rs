@@ -2,6 +2,7 @@
 
 use rand::RngExt;
 
+use super::super::memory::Memory;
 use super::super::roots::Roots;
 use super::*;
 use crate::numerics::rng::stream;
@@ -21,7 +22,7 @@ fn felt(difference: f64, noise: f64) -> Felt {
     let sizes = vec![1.0; 500];
     let roots = Roots { values, thresholds: sizes.clone(), signed: false }.equalised(&sizes, 0.0);
     let completed = Completion::new(&roots).velocities;
-    Felt { roots, completed, sizes, tolerance: 2e-5, iterations: [24, 100] }
+    Felt { roots, completed, sizes, tolerance: 2e-5, iterations: [24, 100], memory: Memory::default() }
 }
 
 fn found(felt: &Felt) -> (Vec<Vec<usize>>, Vec<usize>) {
