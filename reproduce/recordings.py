@@ -81,6 +81,9 @@ def page(rows, design):
             continue
         mean = sum(float(row["ari"]) for row in own) / len(own)
         lines += ["", f"Mean of the adjusted Rand index, {what}: {mean:.3f} (n = {len(own)}); trees right: {trees_right(own)}."]
+    for one in design["recording"]:
+        if until := one.get("held_out_until"):
+            lines += ["", f"{one['name']} was held out until revision {until} failed on it, and it was looked into."]
     return "\n".join(lines) + "\n"
 
 

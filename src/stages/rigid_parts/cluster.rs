@@ -55,7 +55,7 @@ pub(super) struct Felt {
     pub memory: Memory<Learned>,
 }
 
-/// What is learned of a cluster, but for what completes its roots, which follows.
+/// What is learned of a cluster. What completes its roots follows from the loadings and the motion.
 #[derive(Clone)]
 pub(super) struct Learned {
     loadings: Mat<f64>,

@@ -37,7 +37,6 @@ impl Search {
     pub(super) fn separated(&mut self, clusters: &[Cluster]) -> Option<Vec<Cluster>> {
         let before = (self.felt.tolerance, self.felt.iterations);
         let (mut last, mut found) = (before, None::<Vec<Cluster>>);
-        let mut some_leave_much = false;
         for (at, level) in LEVELS.into_iter().enumerate() {
             (self.felt.tolerance, self.felt.iterations) = level;
             let learned = |own: &Cluster| Cluster::learned_longer(&self.felt, own.sensors.clone());
@@ -45,11 +44,15 @@ impl Search {
             if at == 0 {
                 let [nothing, much, told] = self.left_by(&start);
                 self.has_exact_model = told > 0 && 2 * (nothing + much) >= told;
-                some_leave_much = much > 0;
+                let some_are_settled = || start.par_iter().any(|own| self.is_settled(own));
+                if !self.has_exact_model && much == 0 && !some_are_settled() {
+                    // Nothing shows which are of several parts.
+                    break;
+                }
             } else if !quarter_leaves_nothing(&start) {
                 break;
             }
-            if self.nothing_is_left_to_separate(&start, some_leave_much) {
+            if self.nothing_is_left_to_separate(&start) {
                 if self.has_exact_model {
                     continue;
                 }
@@ -104,9 +107,9 @@ impl Search {
         Some(found)
     }
 
-    /// How many of the clusters that can be told are of one part, which leaves nothing, how many of several, which leave much, at all
-    /// speeds, and how many can be told. If most are one or the other, the model is exact. If it has an error, a part leaves something
-    /// between, which vanishes in slow samples. With noise no piece will be exact.
+    /// Of the clusters that can be told: how many leave nothing, as one part does; how many leave much at all speeds, as several parts do;
+    /// and how many there are. If most leave nothing or much, the model is exact. If it has an error, a part leaves something between,
+    /// which vanishes in slow samples. With noise no piece will be exact.
     fn left_by(&self, clusters: &[Cluster]) -> [usize; 3] {
         let told = told(clusters);
         let leaves_nothing = |own: &&&Cluster| own.variance() <= NOTHING;
@@ -116,15 +119,12 @@ impl Search {
         [told.iter().filter(leaves_nothing).count(), told.par_iter().filter(leaves_much).count(), told.len()]
     }
 
-    /// Whether all clusters are settled. Without an exact model nothing is left either if none is, and none leaves much: nothing then
-    /// shows which are of several parts.
-    fn nothing_is_left_to_separate(&self, clusters: &[Cluster], some_leave_much: bool) -> bool {
+    /// Whether all clusters are exact; without an exact model, whether all that can be told are settled.
+    fn nothing_is_left_to_separate(&self, clusters: &[Cluster]) -> bool {
         if self.has_exact_model {
             return clusters.iter().all(|own| self.is_exact(own));
         }
-        let told = told(clusters);
-        let settled = told.par_iter().filter(|own| self.is_settled(own)).count();
-        settled == told.len() || settled == 0 && !some_leave_much
+        told(clusters).par_iter().all(|own| self.is_settled(own))
     }
 
     /// Whether a cluster is of one part: it is exact, or the model is not, and what it leaves is an error of the model.
