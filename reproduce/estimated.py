@@ -125,9 +125,9 @@ def interval(count, of):
     return f"{count} of {of} ({100 * low:.0f} to {100 * high:.0f} %)"
 
 
-def trees_right(rows):
-    """How many trees are right, with the 95 % interval of their share."""
-    return interval(sum(row["tree_right"] == "true" for row in rows), len(rows)) if rows else "–"
+def trees_right(rows, wrong=0):
+    """How many trees are right, with the 95 % interval of their share; of so many more that are wrong, too."""
+    return interval(sum(row["tree_right"] == "true" for row in rows), len(rows) + wrong) if rows else "–"
 
 
 def outcome(row):
