@@ -28,7 +28,8 @@ macro_rules! with_rank {
             4 => Arch::new().dispatch($work::<4> { $($field: $value),* }),
             5 => Arch::new().dispatch($work::<5> { $($field: $value),* }),
             6 => Arch::new().dispatch($work::<6> { $($field: $value),* }),
-            rank => unreachable!("a motion subspace has rank six at most, not {rank}"),
+            7 => Arch::new().dispatch($work::<7> { $($field: $value),* }),
+            rank => unreachable!("a motion has rank six at most, and one more on its way, not {rank}"),
         }
     };
 }

@@ -39,6 +39,8 @@ const LEVERAGE: f64 = 0.9;
 /// How many times the tolerance the variance of a component is at least.
 const PRESENT: f64 = 20.0;
 
+mod minimum;
+
 /// What some sensors of a body felt, and what completes it.
 pub(super) struct Felt {
     /// Scaled by sensor and by sample.
@@ -167,6 +169,9 @@ impl Cluster {
     pub(super) fn learn_longer(&mut self, felt: &Felt) {
         if !self.is_learned || self.variance() > felt.tolerance {
             self.learn(felt, felt.iterations[1], WEIGHTS[1]);
+            if self.variance() > felt.tolerance {
+                self.leave_minimum(felt);
+            }
             self.is_learned = true;
         }
     }

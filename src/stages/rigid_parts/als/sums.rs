@@ -35,11 +35,12 @@ impl<S: Simd, const K: usize> Sums<S, K> {
         regressors: &[[X; K]],
         load: impl Fn(&X) -> S::f64s,
     ) {
-        // All rows of a triangle of K = 6 at once need more registers than most processors have. Each of three passes adds two rows.
-        const { assert!(K <= 6) };
+        // All rows of a triangle of K = 7 at once need more registers than most processors have. Each of four passes adds two rows.
+        const { assert!(K <= 8) };
         self.add_rows::<X, 0>(simd, responses, regressors, &load);
         self.add_rows::<X, 1>(simd, responses, regressors, &load);
         self.add_rows::<X, 2>(simd, responses, regressors, &load);
+        self.add_rows::<X, 3>(simd, responses, regressors, &load);
     }
 
     /// Adds to row A of the triangle, and to the row that is as far from the last. Two rows have K + 1 sums together, whatever A is.

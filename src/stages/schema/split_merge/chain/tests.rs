@@ -4,6 +4,7 @@
 use std::collections::BTreeMap;
 
 use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
 
 use super::*;
 use crate::numerics::partition::named_by_appearance;
@@ -143,12 +144,12 @@ fn the_chain_visits_every_partition_of_six_points_as_often_as_the_posterior_says
     let target = target(&points, &prior, Model::Dpgmm);
     let moves =
         [Mutant::Further, Mutant::NoDivisions, Mutant::NoEnds, Mutant::FurtherOfThree, Mutant::NoEndsOfThree];
-    for mutant in moves.into_iter().chain([Mutant::None]) {
+    moves.into_par_iter().chain([Mutant::None]).for_each(|mutant| {
         let mut rng = stream(5, 1, "partitions", 1);
         let mut chain = SplitMerge::start(&target, &[0; 6], &mut rng).unwrap();
         let p_value = fit(&exact, visits(&mut chain, mutant, &mut rng).into_iter());
         assert_eq!(p_value > ALPHA, mutant.is_right(), "{mutant:?}: {p_value}");
-    }
+    });
 }
 
 /// All trees of up to six nodes, edges as (larger, smaller), sorted.
@@ -234,11 +235,19 @@ fn the_chain_visits_every_partition_of_six_points_with_every_tree_as_often_as_th
         });
         fit(exact, visits.collect::<Vec<_>>().into_iter())
     };
-    assert!(p_value(&exact, Mutant::None) > ALPHA, "{}", p_value(&exact, Mutant::None));
-    assert!(p_value(&exact, Mutant::NoJoints) < ALPHA);
-    // Other targets: without the prior of trees, and with the weight of a parent whose covariance is forgotten.
-    assert!(p_value(&exact_trees(&points, &prior, |_| 1.0, joint), Mutant::None) < ALPHA);
-    assert!(p_value(&exact_trees(&points, &prior, cayley, one_sided), Mutant::None) < ALPHA);
+    // Each in turn has a mistake: the chain; the target, without the prior of trees; and the target, with the weight of a parent whose
+    // covariance is forgotten.
+    let wrong: [&(dyn Fn() -> f64 + Sync); 3] = [
+        &|| p_value(&exact, Mutant::NoJoints),
+        &|| p_value(&exact_trees(&points, &prior, |_| 1.0, joint), Mutant::None),
+        &|| p_value(&exact_trees(&points, &prior, cayley, one_sided), Mutant::None),
+    ];
+    let (right, wrong) = rayon::join(
+        || p_value(&exact, Mutant::None),
+        || wrong.par_iter().map(|p_value| p_value()).collect::<Vec<f64>>(),
+    );
+    assert!(right > ALPHA, "{right}");
+    assert!(wrong.iter().all(|p_value| *p_value < ALPHA), "{wrong:?}");
 }
 
 mod joint_distribution;

@@ -144,9 +144,9 @@ fn largest_z(mutant: Mutant, freedom: f64) -> f64 {
 #[test]
 fn both_ways_to_draw_labels_trees_and_data_have_the_same_moments() {
     // Fifteen features: |z| of 4.2 has a p value of 4e-4 over all of them.
-    let z = largest_z(Mutant::None, 9.0);
-    assert!(z < 4.2, "{z}");
-    assert!(largest_z(Mutant::None, 10.0) > 4.2, "a sweep with another prior");
-    assert!(largest_z(Mutant::NoJoints, 9.0) > 4.2);
-    assert!(largest_z(Mutant::NoDivisions, 9.0) > 4.2);
+    // Of the last three, one draws with another prior, and two have mistakes.
+    let cases =
+        [(Mutant::None, 9.0), (Mutant::None, 10.0), (Mutant::NoJoints, 9.0), (Mutant::NoDivisions, 9.0)];
+    let found: Vec<f64> = cases.into_par_iter().map(|(mutant, freedom)| largest_z(mutant, freedom)).collect();
+    assert!(found[0] < 4.2 && found[1..].iter().all(|z| *z > 4.2), "{found:?}");
 }

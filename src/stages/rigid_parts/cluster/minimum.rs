@@ -1,0 +1,92 @@
+//! Lead the motion of a cluster out of a local minimum of the residual.
+//!
+//! Alternating least squares ends in a local minimum where it started badly: one rigid motion then seems to leave something of what a part
+//! feels. Factors of a larger rank than is needed have fewer such minima (Burer and Monteiro 2005). So the motion is learned once more: from
+//! what is felt alone, with one component more, and then without the least one.
+
+use faer::Mat;
+
+use super::{Cluster, Felt, WEIGHTS};
+use crate::stages::rigid_parts::factorisation::principal_axes;
+use crate::stages::rigid_parts::roots::product;
+
+/// Iterations with one component more.
+const ITERATIONS: usize = 24;
+
+impl Cluster {
+    /// Takes the motion that is learned by a component more, if it leaves less. With too few sensors for that, it stays.
+    pub(super) fn leave_minimum(&mut self, felt: &Felt) {
+        let rank = self.rank();
+        if self.representatives.len() <= rank + 1 {
+            return;
+        }
+        let mut other = self.clone();
+        other.completed = self.as_felt(felt);
+        for (rank, iterations) in [(rank + 1, ITERATIONS), (rank, felt.iterations[1])] {
+            other.loadings = principal_axes(&other.completed, rank);
+            other.motion = product(other.completed.as_ref(), other.loadings.as_ref());
+            other.learn(felt, iterations, WEIGHTS[1]);
+        }
+        if other.variance() < self.variance() {
+            *self = other;
+        }
+    }
+
+    /// The roots of the representatives where they are felt, and 0 elsewhere, samples × sensors. What is missing is completed as before.
+    fn as_felt(&self, felt: &Felt) -> Mat<f64> {
+        let own = felt.roots.select_as_they_are(&self.representatives);
+        Mat::from_fn(own.samples(), own.sensors(), |t, sensor| match own.values[(t, sensor)] {
+            root if root.is_nan() => self.completed[(t, sensor)],
+            root if root < own.thresholds[t] => 0.0,
+            root => root,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::RngExt;
+    use rayon::prelude::*;
+
+    use super::super::super::testing::felt_of;
+    use super::*;
+    use crate::numerics::rng::stream;
+
+    /// What 40 sensors on an ellipsoid feel of a rigid motion of uneven components.
+    fn felt(number: usize) -> Felt {
+        let mut rng = stream(13, 1, "minimum", number);
+        let mut uniform = |rows, columns| Mat::from_fn(rows, columns, |_, _| rng.random_range(-1.0_f64..1.0));
+        let sizes = [4.0, 2.0, 1.3, 0.6, 0.3, 0.2];
+        let (motion, directions) = (uniform(600, 6), uniform(3, 40));
+        let loadings = Mat::from_fn(6, 40, |at, sensor| {
+            let direction = directions.col(sensor);
+            let n = [0, 1, 2].map(|axis| direction[axis] / direction.norm_l2());
+            let place = [0.16 * n[0], 0.13 * n[1], 0.1 * n[2]];
+            let [next, last] = [(at + 1) % 3, (at + 2) % 3];
+            sizes[at] * if at < 3 { n[at] } else { 10.0 * (place[next] * n[last] - place[last] * n[next]) }
+        });
+        let mut felt = felt_of(&product(motion.as_ref(), loadings.as_ref())).0;
+        (felt.tolerance, felt.iterations) = (2e-5, [24, 100]);
+        felt
+    }
+
+    #[test]
+    fn a_rigid_part_leaves_nothing_wherever_its_motion_started() {
+        let left = |number: usize| {
+            let felt = felt(number);
+            let mut own = Cluster::widest(&felt, (0..40).collect());
+            own.completed = own.as_felt(&felt);
+            own.loadings = principal_axes(&own.completed, 6);
+            own.motion = product(own.completed.as_ref(), own.loadings.as_ref());
+            own.learn(&felt, 300, WEIGHTS[1]);
+            let before = own.variance();
+            own.leave_minimum(&felt);
+            assert!(own.variance() <= before, "{number}: {before} becomes {}", own.variance());
+            [before, own.variance()].map(|variance| variance > felt.tolerance)
+        };
+        let left: Vec<[bool; 2]> = (0..24).into_par_iter().map(left).collect();
+        let stuck = |at: usize| left.iter().filter(|own| own[at]).count();
+        // Some of these motions end in a minimum, and none stays there.
+        assert!(stuck(0) > 0 && stuck(1) == 0, "{left:?}");
+    }
+}
