@@ -30,6 +30,9 @@ const MOMENTUM: [f64; 2] = [0.5, 0.98];
 const PACE: [f64; 2] = [1.1, 0.5];
 /// The least tolerance: what the iterations leave.
 pub(super) const LEAST_TOLERANCE: f64 = 3e-4;
+/// Residual variance, in units of the tolerance, up to which more iterations may explain a cluster. A sensor that is in none may leave as
+/// much, which with noise is more than any residual.
+pub(super) const LEFT: f64 = 30.0;
 /// Residual variance at which more iterations say nothing new.
 pub(super) const ROUNDING: f64 = 1e-11;
 /// Degrees of freedom of its residual that a part must have per sample. With fewer, any sensors fit.
@@ -169,7 +172,9 @@ impl Cluster {
     pub(super) fn learn_longer(&mut self, felt: &Felt) {
         if !self.is_learned || self.variance() > felt.tolerance {
             self.learn(felt, felt.iterations[1], WEIGHTS[1]);
-            if self.variance() > felt.tolerance {
+            // Beyond, it is of several parts.
+            let most = LEFT * felt.tolerance.max(LEAST_TOLERANCE);
+            if self.variance() > felt.tolerance && self.variance() <= most {
                 self.leave_minimum(felt);
             }
             self.is_learned = true;

@@ -7,7 +7,7 @@ use faer::Mat;
 use kodama::Method;
 use rayon::prelude::*;
 
-use super::cluster::{Cluster, Felt, LEAST_TOLERANCE};
+use super::cluster::{Cluster, Felt, LEAST_TOLERANCE, LEFT};
 use super::medians::median;
 use super::weights::weigh;
 use crate::numerics::linkage::largest_clusters;
@@ -28,9 +28,6 @@ pub(super) const MIN_SAVING: f64 = 0.3;
 pub(super) const EXPLAINED: f64 = 5.0;
 /// The same of a seed cluster.
 const MIXED: f64 = 10.0;
-/// The same of a sensor that is in no cluster, which with noise is more than any residual; and of a cluster that more iterations may
-/// explain.
-const LEFT: f64 = 30.0;
 /// The tolerance, the residual variance that is encoded as noise is: the least and the largest.
 const TOLERANCE: [f64; 2] = [LEAST_TOLERANCE, 5e-2];
 /// Fewest sensors of a cluster.
