@@ -120,8 +120,7 @@ impl Cluster {
             stratified(sensors.len(), MAX_SENSORS).map(|at| sensors[at]).collect();
         let rank = rank.min(representatives.len().saturating_sub(1)).max(1);
         let completed = columns(&felt.completed, &representatives);
-        let loadings = principal_axes(&completed, rank);
-        let motion = product(completed.as_ref(), loadings.as_ref());
+        let (loadings, motion) = principal_motion(&completed, rank);
         let mut cluster = Self {
             sensors,
             representatives,
@@ -362,6 +361,13 @@ impl Cluster {
         let loadings = sensors * self.rank() as f64 * samples.ln() / samples;
         0.5 * (motion + ratio * self.freedom * residual + loadings)
     }
+}
+
+/// c and w where the iterations start: so many principal components of completed roots, samples × sensors.
+fn principal_motion(completed: &Mat<f64>, rank: usize) -> (Mat<f64>, Mat<f64>) {
+    let loadings = principal_axes(completed, rank);
+    let motion = product(completed.as_ref(), loadings.as_ref());
+    (loadings, motion)
 }
 
 /// The residual variance of a sum of squares of so many roots; of one more, so that there is a variance of none.

@@ -6,9 +6,7 @@
 
 use faer::Mat;
 
-use super::{Cluster, Felt, WEIGHTS};
-use crate::stages::rigid_parts::factorisation::principal_axes;
-use crate::stages::rigid_parts::roots::product;
+use super::{Cluster, Felt, WEIGHTS, principal_motion};
 
 /// Iterations with one component more.
 const ITERATIONS: usize = 24;
@@ -23,8 +21,7 @@ impl Cluster {
         let mut other = self.clone();
         other.completed = self.as_felt(felt);
         for (rank, iterations) in [(rank + 1, ITERATIONS), (rank, felt.iterations[1])] {
-            other.loadings = principal_axes(&other.completed, rank);
-            other.motion = product(other.completed.as_ref(), other.loadings.as_ref());
+            (other.loadings, other.motion) = principal_motion(&other.completed, rank);
             other.learn(felt, iterations, WEIGHTS[1]);
         }
         if other.variance() < self.variance() {
@@ -51,6 +48,7 @@ mod tests {
     use super::super::super::testing::felt_of;
     use super::*;
     use crate::numerics::rng::stream;
+    use crate::stages::rigid_parts::roots::product;
 
     /// What 40 sensors on an ellipsoid feel of a rigid motion of uneven components.
     fn felt(number: usize) -> Felt {
@@ -76,8 +74,7 @@ mod tests {
             let felt = felt(number);
             let mut own = Cluster::widest(&felt, (0..40).collect());
             own.completed = own.as_felt(&felt);
-            own.loadings = principal_axes(&own.completed, 6);
-            own.motion = product(own.completed.as_ref(), own.loadings.as_ref());
+            (own.loadings, own.motion) = principal_motion(&own.completed, 6);
             own.learn(&felt, 300, WEIGHTS[1]);
             let before = own.variance();
             own.leave_minimum(&felt);
