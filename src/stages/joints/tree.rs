@@ -39,8 +39,7 @@ pub struct Pair {
 /// How the parts of a body are joined.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Joints {
-    /// The rank of the motion subspace of each part, by the label of the part. It is six at most, but for parts whose faces have
-    /// motions of their own, which may count twice; 0 for a part that feels nothing.
+    /// The rank of the motion subspace of each part, by the label of the part: six at most, and 0 for a part that feels nothing.
     pub ranks: BTreeMap<usize, usize>,
     /// The tree between labels of parts: one edge fewer than parts. Which part is the root says nothing.
     pub tree: Vec<Edge>,

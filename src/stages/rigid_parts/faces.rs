@@ -1,4 +1,4 @@
-//! Divide sensors into faces: connected components of the graph that links sensors of correlated roots.
+//! Group sensors by what they feel: those of one flat face feel the same, and those of opposite faces rest in turn.
 //!
 //! Along a curved side each sensor feels much like its neighbours, so that a chain of correlations links them all. The flat
 //! ends of a cylinder alone feel its motion along its axis. Nothing links them to its side, and nothing in their motion says
@@ -10,8 +10,6 @@ use faer::Mat;
 
 use super::roots::Roots;
 
-/// Size of the correlation of roots from which on two sensors of a part are on one face, or on opposite ones.
-const LINKED: f64 = 0.5;
 /// Correlation of roots from which on two sensors feel the same.
 const SIMILAR: f64 = 0.8;
 /// Correlation and cosine of the roots of two groups below which they are opposite: one rests while the other feels.
@@ -19,14 +17,15 @@ const OPPOSITE: (f64, f64) = (-0.2, 0.1);
 /// Share of the mean square below which a variance is rounding error.
 const ROUNDING: f64 = 1e-10;
 
-/// The faces that these sensors are on, each together with its opposite. Each is rising, in the order of their first sensors.
-pub(super) fn faces(roots: &Roots, sensors: &[usize]) -> Vec<Vec<usize>> {
-    linked(roots, sensors, |correlation| correlation.abs() > LINKED)
-}
-
-/// The groups of these sensors that feel the same.
+/// The groups of these sensors that feel the same: connected components of the graph that links sensors of correlated roots. Each is rising,
+/// in the order of their first sensors.
 pub(crate) fn similar(roots: &Roots, sensors: &[usize]) -> Vec<Vec<usize>> {
-    linked(roots, sensors, |correlation| correlation > SIMILAR)
+    if sensors.is_empty() {
+        return Vec::new();
+    }
+    let similarity = Similarity::new(&roots.select(sensors));
+    let found = connected_components(sensors.len(), |a, b| similarity.of(&[a], &[b]).0 > SIMILAR);
+    found.into_iter().map(|group| group.into_iter().map(|at| sensors[at]).collect()).collect()
 }
 
 /// The pairs of groups of which one rests while the other feels, as the two ends of a cylinder do.
@@ -46,16 +45,6 @@ pub(crate) fn opposite_pairs(roots: &Roots, groups: &[&[usize]]) -> Vec<(usize, 
         correlation < OPPOSITE.0 && cosine < OPPOSITE.1
     };
     (0..groups.len()).flat_map(|a| (a + 1..groups.len()).map(move |b| (a, b))).filter(are_opposite).collect()
-}
-
-/// The connected components of these sensors, where the correlation of two decides on a link.
-fn linked(roots: &Roots, sensors: &[usize], is_linked: impl Fn(f64) -> bool) -> Vec<Vec<usize>> {
-    if sensors.is_empty() {
-        return Vec::new();
-    }
-    let similarity = Similarity::new(&roots.select(sensors));
-    let found = connected_components(sensors.len(), |a, b| is_linked(similarity.of(&[a], &[b]).0));
-    found.into_iter().map(|group| group.into_iter().map(|at| sensors[at]).collect()).collect()
 }
 
 /// The connected components of 0, …, n − 1, each rising, in the order of their first.
