@@ -97,7 +97,7 @@ def of_recordings():
     doubtful = sum(row["fit"] == "doubtful" for row in held_out)
     which = "All" if doubtful == len(held_out) else doubtful
     failed = [one["name"] for one in design("recordings")["recording"] if "held_out_until" in one]
-    more = f"; {trees_right(held_out, len(failed))} with {', '.join(failed)}, looked into since" if failed else ""
+    more = f" ({trees_right(held_out, len(failed))} with {', '.join(failed)}, examined since)" if failed else ""
     found = [
         f"Held-out [recorded movements](docs/own-data.md#recorded-movements), at most {most} samples: trees right in",
         f"{trees_right(held_out)}{more}. {which} fits are doubtful. Seed {seed}; `reproduce/recordings.py` of revision {revisions(held_out)}.",
@@ -122,7 +122,7 @@ def of_robots():
         f"- **Public robots.** At p = 0.5 and 100,000 samples, trees of held-out robots were right in {trees_right(held_out)}. Of those",
         f"  that the method was developed on, they were in {trees_right(seen)}. **A good fit does not mean a right tree:** of the held-out",
         f"  robots whose fit is good, they were in {trees_right(good)}. Trees count here also where the fit is not good (`--force`). Of all",
-        f"  {len(ran)}, {len(wrong)} trees are wrong; in {surplus} of these the only fault is a surplus part.",
+        f"  {len(ran)}, {len(wrong)} trees are wrong; in {surplus} of these all joints are right, and some part is found as several.",
         f"  [Which ones and why](shown/robots/README.md): seed {ran[0]['seed']}; {made_by(revisions(ran), 'robots.py')}.",
         f"- **Robots of boxes.** At p = 0.5 and 20,000 samples, the tree was right for {trees_right(boxes)}, which were drawn at random.",
         f"  The number of parts was right for {interval(counted, len(boxes))} ([page](shown/boxes/README.md)). Sides along a hinge have the same",

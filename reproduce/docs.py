@@ -36,7 +36,7 @@ LARGE = 200_000
 
 # The claims that the README shows beside the headline: what the abstract of the paper rests on, and what a reader would ask next.
 CLAIMS = [
-    ("exp1", "baseline-tree", "DPGMM + Prim never recovers the tree"),
+    ("exp1", "baseline-tree", "The same mixture without joints, then Prim's tree (DPGMM + Prim), never recovers the tree"),
     ("exp1", "first-dimension", "The tree needs about nine dimensions"),
     ("exp1", "tree-high-dimensions", "The tree is recovered from d = 9 on (worst d)"),
     ("exp1", "number-of-parts", "Slightly more than five parts (worst d)"),

@@ -7,8 +7,8 @@ skin, the body walks, and parts and tree are estimated from what the skin feels.
 
 This walk is made, not recorded: [reproduce/walk.py](../../reproduce/walk.py) writes the file `walk.bvh`. Its angles are the waves of a
 gait, and slower waves of random frequencies, so that no step is like another. Any BVH file of motion capture will do in its place:
-`python felt_walk.py dance.bvh`. [What real recordings give](../../docs/own-data.md#recorded-movements) has 43 of them, and how often
-their trees are right.
+`python felt_walk.py dance.bvh`. [How often the trees of real recordings are right](../../docs/own-data.md#recorded-movements)
+is counted, too.
 """
 
 # %%
@@ -101,8 +101,8 @@ for bone in np.unique(moved.parts):
         print(moved.names[bone])
 
 # %% [markdown]
-# **Sensors that feel too little.** A few sensors are on a wrong part. They feel something at a few samples only. So few numbers do not
-# tell which part's motion made them: several explain them well, or none does.
+# **Sensors on a wrong part.** Nearly all of these feel something at a few samples only. So few numbers do not tell which part's motion made
+# them: several explain them well, or none does.
 
 # %%
 wrong = [sensor for sensor in np.flatnonzero(felt) if bone_of[found.parts[sensor]] != moved.parts[sensor]]
