@@ -44,9 +44,8 @@ option = [{{ settings = {{ motion = {{ controller = \"torque\", stiffness = 0.2 
     )
 }
 
-/// Two gains and two ways to weigh edges, all combinations, of which the best two go on to a second round.
+/// Two gains and two ways to weigh edges, all combinations, ranked.
 fn ranked() -> String {
-    let more = SMALL.replace("simulations = 2", "simulations = 3");
     format!(
         "title = \"A search\"
 seed = 1
@@ -54,10 +53,6 @@ vary = \"grid\"
 sections = [\"ranking\", \"trade-offs\", \"shares\"]
 [settings]
 {SMALL}
-[next]
-keep = 2
-[next.settings]
-{more}
 [[claim]]
 id = \"number-of-parts\"
 experiment = \"exp1\"
@@ -193,7 +188,7 @@ fn a_study_of_one_factor_at_a_time_says_what_each_value_does_and_continues_where
 }
 
 #[test]
-fn a_ranking_keeps_the_best_for_the_next_round_and_shows_which_claims_hold_together() {
+fn a_ranking_has_the_settings_of_the_best_and_shows_which_claims_hold_together() {
     let folder = tempfile::tempdir().unwrap();
     let at = |name: &str| folder.path().join(name);
     fs::write(at("design.toml"), ranked()).unwrap();
@@ -210,12 +205,6 @@ fn a_ranking_keeps_the_best_for_the_next_round_and_shows_which_claims_hold_toget
     let best = fs::read_to_string(at("one/best.toml")).unwrap();
     assert!(best.contains("levels = 3"), "{best}");
     succeed(folder.path(), "simulate --settings one/best.toml --out body");
-    // The next round is a design of its own.
-    succeed(folder.path(), "study one/next.toml --out two");
-    let second = rows(&at("two/ranking.csv"));
-    assert_eq!(second.len(), 2);
-    assert!(second.iter().all(|row| row["name"].starts_with("gentle")), "{second:?}");
-    assert_eq!(rows(&at("two/study.csv"))[0]["simulations"], "3");
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
 use toml::{Table, Value};
 
 use crate::settings::{PAPER, Settings};
@@ -48,7 +48,7 @@ pub(super) fn value_of(settings: &Settings, key: &str) -> Option<String> {
 }
 
 /// The gains of a torque, by what they do to the body that they are for.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Gains {
     /// Natural frequency of a part that swings about its end, rad/s: √(stiffness / (m L² / 3)).

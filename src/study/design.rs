@@ -4,7 +4,7 @@ mod check;
 
 use std::ops::RangeInclusive;
 
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
 use toml::Table;
 
 use super::choices::{Gains, flat, short};
@@ -33,7 +33,7 @@ pub(super) const COLUMNS: [&str; 11] = [
 ];
 
 /// A study: what is run, and how it is judged.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Design {
     /// Where it was read, for messages.
@@ -47,39 +47,36 @@ pub(crate) struct Design {
     /// Master seed of all simulations. Those of the m-th drawn movement have the seed plus m.
     pub seed: u64,
     /// How the factors make configurations, unless they are drawn.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(default)]
     pub vary: Option<Vary>,
     /// How many configurations are drawn from the factors.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(default)]
     pub draws: Option<DrawCounts>,
     /// Sections of the page, in their order; without any, those that fit the configurations.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[serde(default)]
     pub sections: Vec<Section>,
     /// Names of factors whose options make groups of configurations, whose shares are also shown alone.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[serde(default)]
     pub groups: Vec<String>,
     /// What every configuration has instead of the values of `reproduce/paper.toml`.
     #[serde(default)]
     pub settings: Table,
     /// Open settings that no factor varies and values that are no options, with reasons.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[serde(default)]
     pub left_out: Vec<LeftOut>,
-    /// The next round of a search: how many of the best go on, and how they are run.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub next: Option<Next>,
     /// The claims; without any, those of `reproduce/scored.toml`.
     #[serde(rename = "claim", default)]
     pub claims: Vec<JudgedClaim>,
     /// Named configurations; changes are from the first.
-    #[serde(rename = "configuration", default, skip_serializing_if = "Vec::is_empty")]
+    #[serde(rename = "configuration", default)]
     pub configurations: Vec<NamedConfiguration>,
     /// Open settings, and the values that are tried.
-    #[serde(rename = "factor", default, skip_serializing_if = "Vec::is_empty")]
+    #[serde(rename = "factor", default)]
     pub factors: Vec<Factor>,
 }
 
 /// How factors make configurations.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Vary {
     /// The base, and one option of one factor at a time.
@@ -89,7 +86,7 @@ pub(crate) enum Vary {
 }
 
 /// A section of the page.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Section {
     /// Each claim's value by each configuration.
@@ -111,7 +108,7 @@ pub(crate) enum Section {
 }
 
 /// A claim that configurations are judged by.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct JudgedClaim {
     /// Its short name in `reproduce/published.toml`.
@@ -121,15 +118,15 @@ pub(crate) struct JudgedClaim {
     /// What stands above its column, in two lines at most.
     pub label: String,
     /// Its share of the score, before division by the sum of all.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(default)]
     pub weight: Option<f64>,
     /// Distance from the accepted range at which no credit is left; credit falls linearly up to there.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(default)]
     pub slack: Option<f64>,
 }
 
 /// A named configuration.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct NamedConfiguration {
     /// Its name in tables and pictures.
@@ -140,24 +137,24 @@ pub(crate) struct NamedConfiguration {
 }
 
 /// An open setting, or several that belong together.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Factor {
     /// Name in tables, pictures and their files.
     pub name: String,
     /// What it is, as a heading; its name if it is empty.
-    #[serde(default, skip_serializing_if = "String::is_empty")]
+    #[serde(default)]
     pub title: String,
     /// What it decides; for drawn configurations.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(default)]
     pub level: Option<Level>,
     /// What the paper says of it, and where.
     pub paper: String,
     /// The settings that it varies, `section.key`; for one factor at a time.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[serde(default)]
     pub settings: Vec<String>,
     /// Why the base has the value that it has; for one factor at a time.
-    #[serde(default, skip_serializing_if = "String::is_empty")]
+    #[serde(default)]
     pub why: String,
     /// The values.
     #[serde(rename = "option")]
@@ -165,33 +162,34 @@ pub(crate) struct Factor {
 }
 
 /// A value of an open setting.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Choice {
     /// Name in tables and pictures; its settings in a line if it is empty.
     #[serde(default)]
     pub label: String,
     /// Why it is reasonable: a source or a reason.
-    #[serde(default, skip_serializing_if = "String::is_empty")]
+    #[serde(default)]
     pub why: String,
     /// The settings.
     #[serde(default)]
     pub settings: Table,
     /// Gains that go with the body.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(default)]
     pub gains: Option<Gains>,
     /// How many shares of the draws it has; 1 without a number.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(default)]
     pub weight: Option<usize>,
 }
 
 /// Open settings that no factor varies, or values that are no options.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct LeftOut {
     /// `section.key`, `section` for all of a section, or `section.key = value`.
     pub what: Vec<String>,
     /// Why.
+    #[cfg_attr(not(test), expect(dead_code, reason = "whoever reads the design reads it"))]
     pub why: String,
 }
 
@@ -203,16 +201,6 @@ impl Choice {
         let name = |line: String| line.split(" = ").next().unwrap_or_default().to_owned();
         flat(&self.settings).into_iter().map(name).chain(of_gains).collect()
     }
-}
-
-/// The next round of a search.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(crate) struct Next {
-    /// Number of configurations that go on, the best first.
-    pub keep: usize,
-    /// What the next round lays over the base: usually more simulations.
-    pub settings: Table,
 }
 
 impl Design {

@@ -163,8 +163,8 @@ fn write_rest(results: &Results, folder: &mut ResultFolder) -> Result<(), Experi
     let ranking = results.design.has(Section::Ranking).then(|| Ranking::of(results));
     if let Some(ranking) = &ranking {
         folder.write_rows("ranking.csv", &ranking.rows)?;
-        for (name, text) in ranking.files(results) {
-            folder.write_text(name, &text)?;
+        if let Some(text) = ranking.best(results) {
+            folder.write_text("best.toml", &text)?;
         }
     }
     for (name, picture) in page::pictures(results, evaluation.as_ref())? {

@@ -151,10 +151,6 @@ fn configuration(
         merge(&mut changes, &gains.settings(&settings));
         settings = overlaid(&changes)?;
     }
-    if let Some(next) = &design.next {
-        // Before hours are spent on this round.
-        settings_of(design, "next.settings", [&design.settings, &next.settings, &changes])?;
-    }
     settings.experiment.seed = seed;
     let labels =
         choices.iter().map(|choice| choice.map_or(String::new(), |choice| choice.label.clone())).collect();

@@ -1,10 +1,9 @@
-//! Rank configurations by the score of the claims that they reproduce, and name those that go on to a next round.
+//! Rank configurations by the score of the claims that they reproduce.
 
 use serde::Serialize;
-use toml::Table;
 
 use super::choices::merge;
-use super::design::{Design, JudgedClaim, NamedConfiguration, Section};
+use super::design::{Design, JudgedClaim};
 use super::plan::plan;
 use super::results::{ClaimRow, Results};
 use crate::analysis::claims::Verdict;
@@ -71,53 +70,16 @@ impl Ranking {
         Self { rows }
     }
 
-    /// Names and texts of best.toml, the settings of the best resolved configuration, and of next.toml, the design of the next
-    /// round, where there are such.
-    pub(super) fn files(&self, results: &Results) -> Vec<(&'static str, String)> {
-        let Ok(plan) = plan(&results.design) else { return Vec::new() };
-        let changes = |row: &RankRow| {
-            plan.iter().find(|one| one.number == row.configuration).map(|one| one.changes.clone())
-        };
-        let mut files = Vec::new();
-        // What the step does not resolve cannot win.
-        if let Some(best) = self.rows.first().filter(|best| best.resolved)
-            && let Some(table) = changes(best)
-        {
-            let mut settings = results.design.settings.clone();
-            merge(&mut settings, &table);
-            files.push(("best.toml", format!("# The configuration {}.\n{}", best.name, in_toml(&settings))));
-        }
-        if let Some(next) = &results.design.next {
-            let go_on = self.rows.iter().take(next.keep);
-            let configurations: Vec<NamedConfiguration> = go_on
-                .filter_map(|row| {
-                    Some(NamedConfiguration { name: row.name.clone(), settings: changes(row)? })
-                })
-                .collect();
-            let mut settings = results.design.settings.clone();
-            merge(&mut settings, &next.settings);
-            let count = configurations.len();
-            let design = Design {
-                title: format!("{}: the next round", results.design.title),
-                settings,
-                configurations,
-                vary: None,
-                draws: None,
-                groups: Vec::new(),
-                factors: Vec::new(),
-                next: None,
-                sections: vec![Section::Ranking, Section::TradeOffs],
-                ..results.design.clone()
-            };
-            let text = toml::to_string(&design).expect("a design can be written");
-            files.push(("next.toml", format!("# The best {count} configurations, the best first.\n{text}")));
-        }
-        files
+    /// The text of best.toml: the settings of the best configuration, unless the physics step does not resolve it.
+    pub(super) fn best(&self, results: &Results) -> Option<String> {
+        let best = self.rows.first().filter(|best| best.resolved)?;
+        let plan = plan(&results.design).ok()?;
+        let found = plan.iter().find(|one| one.number == best.configuration)?;
+        let mut settings = results.design.settings.clone();
+        merge(&mut settings, &found.changes);
+        let text = toml::to_string(&settings).expect("a table can be written");
+        Some(format!("# The configuration {}.\n{text}", best.name))
     }
-}
-
-fn in_toml(table: &Table) -> String {
-    toml::to_string(table).expect("a table can be written")
 }
 
 /// The claims that count, with their places in the design.

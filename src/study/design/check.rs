@@ -23,14 +23,7 @@ impl Design {
         self.check_names()?;
         self.check_factors()?;
         let claims = claims();
-        self.claims.iter().try_for_each(|judged| judged.check(&claims))?;
-        match &self.next {
-            Some(next) if next.keep == 0 => Err("`next.keep` is 0; use at least 1".to_owned()),
-            Some(_) if !self.has(Section::Ranking) => {
-                Err("has [next], which needs `ranking` among its sections".to_owned())
-            }
-            _ => Ok(()),
-        }
+        self.claims.iter().try_for_each(|judged| judged.check(&claims))
     }
 
     /// Whether the configurations are given in one way.
