@@ -97,7 +97,8 @@ def of_recordings():
     doubtful = sum(row["fit"] == "doubtful" for row in held_out)
     which = "All" if doubtful == len(held_out) else doubtful
     failed = [one["name"] for one in design("recordings")["recording"] if "held_out_until" in one]
-    more = f", or {trees_right(held_out, len(failed))} with {', '.join(failed)}, examined since" if failed else ""
+    right = sum(row["tree_right"] == "true" for row in held_out)
+    more = f", {right} of {len(held_out) + len(failed)} with {', '.join(failed)}, examined since" if failed else ""
     found = [
         f"Held-out [recorded movements](docs/own-data.md#recorded-movements), at most {most} samples: trees right in",
         f"{trees_right(held_out)}{more}. {which} fits are doubtful. Seed {seed}; `reproduce/recordings.py` of revision {revisions(held_out)}.",

@@ -42,7 +42,10 @@ const LEVERAGE: f64 = 0.9;
 /// How many times the tolerance the variance of a component is at least.
 const PRESENT: f64 = 20.0;
 
+mod evidence;
 mod minimum;
+
+pub(super) use self::evidence::Evidence;
 
 /// What some sensors of a body felt, and what completes it.
 pub(super) struct Felt {

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 
-use super::cluster::{Cluster, MIN_FREEDOM};
+use super::cluster::{Cluster, Evidence, MIN_FREEDOM};
 use super::faces::similar;
 use super::factorisation::MAX_RANK;
 use super::medians::typical_size;
@@ -53,8 +53,8 @@ pub struct RigidParts {
 pub fn rigid_parts(tactile: &Tactile, signed: bool, sensors: &[usize]) -> RigidParts {
     let mut prepared = Prepared::new(tactile, signed, sensors);
     let count = prepared.series.len();
-    // Sensors that feel something at fewer samples tell next to nothing, and span motions of their own. They go to the part that explains
-    // them best, unless nearly all are such.
+    // Sensors that feel something at fewer samples tell next to nothing, and span motions of their own. They go to the part that makes them
+    // likely, unless nearly all are such.
     let tells: Vec<bool> = (0..count).map(|sensor| prepared.roots.felt_samples(sensor) >= MIN_FELT).collect();
     let telling: Vec<usize> = sensors.iter().copied().filter(|&sensor| tells[sensor]).collect();
     let are_enough = telling.len() >= MIN_SENSORS;
@@ -73,10 +73,20 @@ pub fn rigid_parts(tactile: &Tactile, signed: bool, sensors: &[usize]) -> RigidP
         part.sensors.iter().for_each(|&sensor| labels[sensors[sensor]] = Some(at));
     }
     let residuals: Vec<Vec<f64>> = parts.par_iter().map(|part| part.shares(every)).collect();
-    for (sensor, label) in labels.iter_mut().enumerate() {
-        let most = if are_enough && !tells[sensor] { f64::INFINITY } else { search.most_residual() };
-        *label = label.or_else(|| best_part(&residuals, sensor, most));
-    }
+    let scales: Vec<f64> = sensors.iter().map(|&sensor| prepared.scales[sensor]).collect();
+    let evidence: Vec<Option<Evidence>> = parts.iter().map(|part| part.evidence(&scales)).collect();
+    let likeliest = |sensor: usize| {
+        let scale = prepared.scales[sensor];
+        let scaled = |values: &[f64]| values.iter().map(|value| scale * value).collect::<Vec<_>>();
+        let (roots, thresholds) = (scaled(every.values.col_as_slice(sensor)), scaled(&every.thresholds));
+        let surprise = |own: &Option<Evidence>| own.as_ref()?.surprise(&roots, &thresholds);
+        let surprises = evidence.iter().enumerate().filter_map(|(at, own)| Some((surprise(own)?, at)));
+        surprises.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, at)| at)
+    };
+    labels.par_iter_mut().enumerate().filter(|(_, label)| label.is_none()).for_each(|(sensor, label)| {
+        let likely = if are_enough && !tells[sensor] { likeliest(sensor) } else { None };
+        *label = likely.or_else(|| best_part(&residuals, sensor, search.most_residual()));
+    });
     let rest: Vec<usize> = (0..count).filter(|&sensor| labels[sensor].is_none()).collect();
     let groups = similar(every, &rest);
     for (at, group) in groups.iter().enumerate() {

@@ -23,6 +23,8 @@ pub(super) struct Prepared<'a> {
     pub samples: Vec<usize>,
     /// The least root that is felt, in units of the root mean square of a sensor.
     floor: f64,
+    /// The root mean square of each sensor's roots at these samples, √Pa, which they were divided by.
+    pub scales: Vec<f64>,
     /// The size that the roots at each sample were divided by.
     pub sizes: Vec<f64>,
     /// At these samples, of all sensors; scaled by sensor and by sample.
@@ -41,7 +43,7 @@ impl<'a> Prepared<'a> {
         let floor = typical_floor(&floors, &scales);
         let roots = roots.scaled(&scales);
         let sizes = roots.select(sensors).sizes();
-        Self { roots: roots.equalised(&sizes, floor), series, signed, samples, floor, sizes }
+        Self { roots: roots.equalised(&sizes, floor), series, signed, samples, floor, scales, sizes }
     }
 
     /// A search among these sensors.

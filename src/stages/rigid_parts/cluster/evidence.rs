@@ -1,0 +1,153 @@
+//! Weigh on which part a sensor is that feels something at a few samples only.
+//!
+//! With no more felt samples than c has numbers, any motion explains a sensor. But the many samples at which it feels nothing tell, too:
+//! there c · w is not above 0. And its c is like those of the other sensors of its part. So the part of the largest *evidence* counts
+//! (MacKay 1992): the probability of what the sensor feels, over all c of a normal distribution that has the second moments of the c of the
+//! part's sensors. The integral is by Laplace's approximation.
+
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+
+use super::{Cluster, LEAST_TOLERANCE};
+
+/// Most iterations in which c is found; each updates which samples are informative.
+const ITERATIONS: usize = 30;
+/// Least variance of c in any direction, as a share of the mean one.
+const RIDGE: f64 = 1e-6;
+
+/// What the sensors of a part say of another one that may be on it.
+pub(in super::super) struct Evidence {
+    /// w, k × samples.
+    motion: DMatrix<f64>,
+    /// The inverse of the second moments of c, k × k.
+    precision: DMatrix<f64>,
+    /// Of the precision.
+    log_determinant: f64,
+    /// Residual variance of a root.
+    variance: f64,
+}
+
+impl Cluster {
+    /// Of this part, in the units that these scales take roots to: one for each sensor that was searched.
+    pub(in super::super) fn evidence(&self, scales: &[f64]) -> Option<Evidence> {
+        let (count, k) = self.loadings.shape();
+        let own: Vec<f64> = self.representatives.iter().map(|&sensor| scales[sensor]).collect();
+        let c = DMatrix::from_fn(count, k, |sensor, at| own[sensor] * self.loadings[(sensor, at)]);
+        let mut moments = c.tr_mul(&c) / count as f64;
+        let ridge = RIDGE * moments.trace() / k as f64;
+        (0..k).for_each(|at| moments[(at, at)] += ridge);
+        let factor = Cholesky::new(moments)?;
+        let size = own.iter().map(|scale| scale * scale).sum::<f64>() / count as f64;
+        Some(Evidence {
+            motion: DMatrix::from_fn(k, self.motion.nrows(), |at, t| self.motion[(t, at)]),
+            log_determinant: -log_determinant(&factor),
+            precision: factor.inverse(),
+            variance: size * self.variance().max(LEAST_TOLERANCE),
+        })
+    }
+}
+
+impl Evidence {
+    /// The negative logarithm of the evidence that a sensor with these roots is on the part, but for what is the same for all parts.
+    /// `thresholds`: at each sample, the least root that is felt. A root that is NaN is missing.
+    pub(in super::super) fn surprise(&self, roots: &[f64], thresholds: &[f64]) -> Option<f64> {
+        let w = |t: usize| self.motion.column(t);
+        let is_felt = |t: usize| roots[t] >= thresholds[t];
+        let mut c = DVector::zeros(self.motion.nrows());
+        let mut informative = Vec::new();
+        let mut found = None;
+        for _ in 0..ITERATIONS {
+            let counts = |t: &usize| is_felt(*t) || w(*t).dot(&c) > roots[*t];
+            let now: Vec<usize> = (0..roots.len()).filter(counts).collect();
+            if found.is_some() && now == informative {
+                break;
+            }
+            informative = now;
+            let (mut squares, mut products) = (self.precision.clone(), DVector::zeros(c.len()));
+            for &t in &informative {
+                squares.ger(1.0 / self.variance, &w(t), &w(t), 1.0);
+                products.axpy(roots[t] / self.variance, &w(t), 1.0);
+            }
+            let factor = Cholesky::new(squares)?;
+            c = factor.solve(&products);
+            found = Some(factor);
+        }
+        let residual: f64 = informative.iter().map(|&t| (roots[t] - w(t).dot(&c)).powi(2)).sum();
+        let felt = (0..roots.len()).filter(|&t| is_felt(t)).count();
+        let unlikely = residual / self.variance + c.dot(&(&self.precision * &c));
+        let spread = log_determinant(&found?) - self.log_determinant;
+        Some(0.5 * (unlikely + felt as f64 * self.variance.ln() + spread))
+    }
+}
+
+fn log_determinant(factor: &Cholesky<f64, Dyn>) -> f64 {
+    2.0 * factor.l_dirty().diagonal().iter().map(|value| value.ln()).sum::<f64>()
+}
+
+#[cfg(test)]
+mod tests {
+    use faer::Mat;
+    use rand::RngExt;
+
+    use super::super::super::testing::felt_of;
+    use super::*;
+    use crate::numerics::rng::stream;
+    use crate::stages::rigid_parts::roots::{columns, product};
+
+    /// What these roots are above 0, and how often.
+    fn roots(velocities: &[f64]) -> (Vec<f64>, usize) {
+        let roots: Vec<f64> = velocities.iter().map(|velocity| velocity.max(0.0)).collect();
+        let felt = roots.iter().filter(|root| **root > 0.0).count();
+        (roots, felt)
+    }
+
+    /// Two parts with 30 sensors each, and what 40 more sensors of each feel at one to four of 300 samples.
+    fn two_parts() -> ([Evidence; 2], [Vec<Vec<f64>>; 2]) {
+        let mut rng = stream(17, 1, "evidence", 0);
+        let mut uniform = |rows, columns| Mat::from_fn(rows, columns, |_, _| rng.random_range(-1.0_f64..1.0));
+        let parts = [0, 1].map(|_| {
+            // It travels, so that some sensors hardly ever move outward.
+            let motion = uniform(300, 5);
+            let travels = Mat::from_fn(300, 5, |t, at| motion[(t, at)] + if at == 0 { 1.5 } else { 0.0 });
+            let velocities = product(travels.as_ref(), uniform(5, 8000).as_ref());
+            let feels = |sensor: &usize, range: std::ops::Range<usize>| {
+                range.contains(&roots(velocities.col_as_slice(*sensor)).1)
+            };
+            let own: Vec<usize> = (0..8000).filter(|sensor| feels(sensor, 30..300)).take(30).collect();
+            let few: Vec<usize> = (0..8000).filter(|sensor| feels(sensor, 1..5)).take(40).collect();
+            assert_eq!((own.len(), few.len()), (30, 40));
+            let own = columns(&velocities, &own);
+            let (felt, _) = felt_of(&own);
+            let mut part = Cluster::new(&felt, (0..30).collect());
+            part.learn_longer(&felt);
+            let scale = |sensor: usize| {
+                let squares = roots(own.col_as_slice(sensor)).0.iter().map(|root| root * root).sum::<f64>();
+                (squares / 300.0).sqrt()
+            };
+            let evidence = part.evidence(&(0..30).map(scale).collect::<Vec<_>>()).unwrap();
+            (evidence, few.iter().map(|&sensor| roots(velocities.col_as_slice(sensor)).0).collect())
+        });
+        let [(a, of_a), (b, of_b)] = parts;
+        ([a, b], [of_a, of_b])
+    }
+
+    #[test]
+    fn a_sensor_that_feels_something_at_few_samples_is_on_the_part_that_makes_it_likely() {
+        let (parts, sensors) = two_parts();
+        let surprise = |part: usize, roots: &[f64]| parts[part].surprise(roots, &[1e-12; 300]).unwrap();
+        let right = |own: usize| {
+            let is_right = |roots: &&Vec<f64>| surprise(own, roots) < surprise(1 - own, roots);
+            sensors[own].iter().filter(is_right).count()
+        };
+        // Of 80, by chance 40: with one to four samples, the motion of each part leaves nothing.
+        let right = right(0) + right(1);
+        assert!(right >= 68, "{right} of 80");
+    }
+
+    #[test]
+    fn missing_values_and_nothing_felt_have_an_evidence() {
+        let (parts, _) = two_parts();
+        for roots in [[0.0; 300], [f64::NAN; 300]] {
+            assert!(parts[0].surprise(&roots, &[1e-12; 300]).unwrap().is_finite());
+        }
+    }
+}
