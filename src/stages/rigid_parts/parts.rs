@@ -45,7 +45,7 @@ pub struct RigidParts {
 /// In: M × T pressures, of any sign and NaN where one is missing, of sensors that all change; whether negative ones are signal
 /// (`signed`), not noise about 0; and `sensors`, at least
 /// [`MIN_SENSORS`](super::MIN_SENSORS) of them, rising and spread over all. The motions of parts are learned from these; the other
-/// sensors are assigned to the part with the smallest residual. Out: the part of all M sensors. No random numbers are drawn, and
+/// sensors are assigned to the part with the smallest residual, or, if they feel something at few samples, the largest evidence. Out: the part of all M sensors. No random numbers are drawn, and
 /// the number of threads changes no bit.
 ///
 /// # Panics
