@@ -45,8 +45,6 @@ const PRESENT: f64 = 20.0;
 mod evidence;
 mod minimum;
 
-pub(super) use self::evidence::Evidence;
-
 /// What some sensors of a body felt, and what completes it.
 pub(super) struct Felt {
     /// Scaled by sensor and by sample.

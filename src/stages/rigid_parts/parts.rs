@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 
-use super::cluster::{Cluster, Evidence, MIN_FREEDOM};
+use super::cluster::{Cluster, MIN_FREEDOM};
 use super::faces::similar;
 use super::factorisation::MAX_RANK;
 use super::medians::typical_size;
@@ -74,14 +74,14 @@ pub fn rigid_parts(tactile: &Tactile, signed: bool, sensors: &[usize]) -> RigidP
     }
     let residuals: Vec<Vec<f64>> = parts.par_iter().map(|part| part.shares(every)).collect();
     let scales: Vec<f64> = sensors.iter().map(|&sensor| prepared.scales[sensor]).collect();
-    let evidence: Vec<Option<Evidence>> = parts.iter().map(|part| part.evidence(&scales)).collect();
+    let evidence: Vec<_> = parts.iter().map(|part| part.evidence(&scales)).collect();
     let likeliest = |sensor: usize| {
         let scale = prepared.scales[sensor];
         let scaled = |values: &[f64]| values.iter().map(|value| scale * value).collect::<Vec<_>>();
         let (roots, thresholds) = (scaled(every.values.col_as_slice(sensor)), scaled(&every.thresholds));
-        let surprise = |own: &Option<Evidence>| own.as_ref()?.surprise(&roots, &thresholds);
-        let surprises = evidence.iter().enumerate().filter_map(|(at, own)| Some((surprise(own)?, at)));
-        surprises.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, at)| at)
+        let own = evidence.iter().map(|own| own.as_ref()?.surprise(&roots, &thresholds));
+        let known = own.enumerate().filter_map(|(at, surprise)| Some((surprise?, at)));
+        known.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, at)| at)
     };
     labels.par_iter_mut().enumerate().filter(|(_, label)| label.is_none()).for_each(|(sensor, label)| {
         let likely = if are_enough && !tells[sensor] { likeliest(sensor) } else { None };
