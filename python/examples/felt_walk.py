@@ -101,8 +101,8 @@ for bone in np.unique(moved.parts):
         print(moved.names[bone])
 
 # %% [markdown]
-# **Sensors on a wrong part.** Nearly all of these feel something at a few samples only. So few numbers do not tell which part's motion made
-# them: several explain them well, or none does.
+# **Sensors on a wrong part.** A sensor that feels something at a few samples only hardly tells which part's motion made them. And the motions
+# of two parts can explain a sensor alike.
 
 # %%
 wrong = [sensor for sensor in np.flatnonzero(felt) if bone_of[found.parts[sensor]] != moved.parts[sensor]]
