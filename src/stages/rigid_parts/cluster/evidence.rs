@@ -2,8 +2,8 @@
 //!
 //! With no more felt samples than c has numbers, any motion explains a sensor. But the many samples at which it feels nothing tell, too:
 //! there c · w is not above 0. And its c is like those of the other sensors of its part. So the part of the largest *evidence* counts
-//! (MacKay 1992): the probability of what the sensor feels, over all c of a normal distribution that has the second moments of the c of the
-//! part's sensors. The integral is by Laplace's approximation.
+//! (MacKay 1992): the probability of what the sensor feels if it is on that part. Its c is taken as normal, with the second moments of the c
+//! of the part's sensors. The integral over c is by Laplace's approximation.
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
