@@ -42,7 +42,7 @@ const LEVERAGE: f64 = 0.9;
 /// How many times the tolerance the variance of a component is at least.
 const PRESENT: f64 = 20.0;
 
-mod evidence;
+pub(super) mod evidence;
 mod minimum;
 
 /// What some sensors of a body felt, and what completes it.

@@ -8,11 +8,13 @@ use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 
+use super::cluster::evidence::Evidence;
 use super::cluster::{Cluster, MIN_FREEDOM};
 use super::faces::similar;
 use super::factorisation::MAX_RANK;
 use super::medians::typical_size;
 use super::prepared::Prepared;
+use super::roots::Roots;
 use super::search::MIN_SENSORS;
 use super::separation::best_part;
 use super::subspace::{MotionSubspace, ROTATION_RANK};
@@ -75,14 +77,7 @@ pub fn rigid_parts(tactile: &Tactile, signed: bool, sensors: &[usize]) -> RigidP
     let residuals: Vec<Vec<f64>> = parts.par_iter().map(|part| part.shares(every)).collect();
     let scales: Vec<f64> = sensors.iter().map(|&sensor| prepared.scales[sensor]).collect();
     let evidence: Vec<_> = parts.iter().map(|part| part.evidence(&scales)).collect();
-    let likeliest = |sensor: usize| {
-        let scale = prepared.scales[sensor];
-        let scaled = |values: &[f64]| values.iter().map(|value| scale * value).collect::<Vec<_>>();
-        let (roots, thresholds) = (scaled(every.values.col_as_slice(sensor)), scaled(&every.thresholds));
-        let own = evidence.iter().map(|own| own.as_ref()?.surprise(&roots, &thresholds));
-        let known = own.enumerate().filter_map(|(at, surprise)| Some((surprise?, at)));
-        known.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, at)| at)
-    };
+    let likeliest = |sensor: usize| likeliest_part(&evidence, every, sensor, prepared.scales[sensor]);
     labels.par_iter_mut().enumerate().filter(|(_, label)| label.is_none()).for_each(|(sensor, label)| {
         let likely = if are_enough && !tells[sensor] { likeliest(sensor) } else { None };
         *label = likely.or_else(|| best_part(&residuals, sensor, search.most_residual()));
@@ -114,6 +109,15 @@ pub fn rigid_parts(tactile: &Tactile, signed: bool, sensors: &[usize]) -> RigidP
             .collect(),
         labels: named,
     }
+}
+
+/// The part of the largest evidence for a sensor, whose roots were divided by this scale.
+fn likeliest_part(parts: &[Option<Evidence>], roots: &Roots, sensor: usize, scale: f64) -> Option<usize> {
+    let scaled = |values: &[f64]| values.iter().map(|value| scale * value).collect::<Vec<_>>();
+    let (own, thresholds) = (scaled(roots.values.col_as_slice(sensor)), scaled(&roots.thresholds));
+    let surprises = parts.iter().map(|part| part.as_ref()?.surprise(&own, &thresholds));
+    let known = surprises.enumerate().filter_map(|(at, surprise)| Some((surprise?, at)));
+    known.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, at)| at)
 }
 
 /// The clusters that are parts: those that feel how they rotate, and large ones.
