@@ -163,15 +163,25 @@ def volume(part):
 
 
 def mass_of_urdf(file):
-    """The sum of the masses of all links, kg; none where a link that has a shape names no mass."""
-    total = 0.0
-    for link in xml.parse(file).getroot().findall("link"):
-        mass = link.find("inertial/mass")
-        value = float(mass.get("value")) if mass is not None else 0.0
-        if value <= 0 and (link.find("collision") is not None or link.find("visual") is not None):
-            return None
-        total += value
-    return total
+    """The sum of the masses of all links, kg; none where nothing that is fixed together names a mass, but has a shape."""
+    robot = xml.parse(file).getroot()
+    together = {}  # what the link of a name is fixed to
+
+    def first(name):
+        while name in together:
+            name = together[name]
+        return name
+
+    for joint in robot.findall("joint"):
+        if joint.get("type") == "fixed":
+            together[first(joint.find("child").get("link"))] = first(joint.find("parent").get("link"))
+    masses, shaped = {}, set()
+    for link in robot.findall("link"):
+        mass, name = link.find("inertial/mass"), first(link.get("name"))
+        masses[name] = masses.get(name, 0.0) + (float(mass.get("value")) if mass is not None else 0.0)
+        if link.find("collision") is not None or link.find("visual") is not None:
+            shaped.add(name)
+    return None if any(masses[name] <= 0 for name in shaped) else sum(masses.values())
 
 
 def mass_of_mjcf(file, root):

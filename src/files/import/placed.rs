@@ -87,6 +87,9 @@ pub(super) struct Link {
     pub bare_mass: f64,
     /// All of its mass, as the description names it.
     pub named: Option<Mass>,
+    /// Whether it names no mass in a description where that is none (URDF). Its shapes then weigh as water, but only where nothing
+    /// that is fixed to it names a mass.
+    pub is_unweighed: bool,
 }
 
 /// What was read of a description.

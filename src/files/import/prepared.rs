@@ -141,7 +141,8 @@ fn stand_ins(word: &str, links: &mut [Link], strict: bool, notes: &mut Vec<Strin
     Ok(())
 }
 
-/// Gives the mass of what has no shape to the rigid body that it is part of, or else to the one that carries it.
+/// Gives the mass of what has no shape to the rigid body that it is part of, or else to the one that carries it. Where masses cannot
+/// stay where they are named, all that is fixed together is equally dense.
 fn weigh_bare(word: &str, links: &mut [Link], strict: bool, notes: &mut Vec<String>) -> Result<(), Wrong> {
     let tree = Tree::new(links);
     let first_shaped = tree.rigids.iter().position(|rigid| rigid.lead.is_some());
@@ -182,7 +183,16 @@ fn weigh_bare(word: &str, links: &mut [Link], strict: bool, notes: &mut Vec<Stri
             notes.push(format!(
                 "{word} `{name}`: a mass too large for its shape is spread over all that is fixed to it"
             ));
-            let all = solids().map(Solid::own_mass).sum::<f64>() + added;
+        }
+        // A ball that stands for what has no shape weighs what that weighs.
+        let real = |solid: &&Solid| !solid.is_bare;
+        let (unweighed, weighed): (Vec<usize>, Vec<usize>) =
+            members.iter().partition(|&&at| links[at].is_unweighed);
+        let all: f64 =
+            weighed.iter().flat_map(|&at| &links[at].solids).filter(real).map(Solid::own_mass).sum::<f64>()
+                + added;
+        let is_part_unweighed = all > 0.0 && unweighed.iter().any(|&at| !links[at].solids.is_empty());
+        if too_dense || is_part_unweighed {
             let bulk: f64 = solids().map(Solid::bulk).sum();
             for &at in members {
                 links[at].solids.iter_mut().for_each(|solid| solid.mass = Some(all * solid.bulk() / bulk));
@@ -192,8 +202,6 @@ fn weigh_bare(word: &str, links: &mut [Link], strict: bool, notes: &mut Vec<Stri
         if added == 0.0 {
             continue;
         }
-        // A ball that stands for what has no shape weighs what that weighs.
-        let real = |solid: &&Solid| !solid.is_bare;
         let own: f64 =
             members.iter().flat_map(|&at| &links[at].solids).filter(real).map(Solid::own_mass).sum();
         let all = own + added;

@@ -15,8 +15,8 @@ fn of_solid(solid: &Solid) -> Mass {
     Mass { mass, centre: solid.pose.translation.vector, tensor }
 }
 
-/// The mass of each rigid body, where the description names that of one of its links at least; the other links are even solids, or at
-/// a point if they have no shape. `bearers` are the rigid bodies that the links count for.
+/// The mass of each rigid body, where the description names that of one of its links at least; of the other links, those that
+/// weigh something are even solids, or at a point if they have no shape. `bearers` are the rigid bodies that the links count for.
 pub(super) fn wholes(links: &[Link], count: usize, bearers: &[Option<usize>]) -> Vec<Option<Mass>> {
     let mut borne = vec![(Vec::new(), false); count];
     for (link, bearer) in links.iter().zip(bearers) {
@@ -24,6 +24,7 @@ pub(super) fn wholes(links: &[Link], count: usize, bearers: &[Option<usize>]) ->
         *is_named |= link.named.is_some();
         match link.named {
             Some(named) => masses.push(named),
+            None if link.is_unweighed => {}
             None => {
                 masses.extend(link.solids.iter().filter(|solid| !solid.is_bare).map(of_solid));
                 let point = Mass { mass: link.bare_mass, centre: link.origin, tensor: Matrix3::zeros() };

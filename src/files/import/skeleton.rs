@@ -250,7 +250,16 @@ impl<'a> Skeleton<'a> {
     fn link(&self, joint: usize, parent: Option<usize>, turns: Vec<Turn>) -> Link {
         let origin = self.places[joint];
         let solids = self.bones[joint].iter().map(|bone| capsule(origin, *bone)).collect();
-        Link { name: self.name(joint).to_owned(), parent, origin, turns, solids, bare_mass: 0.0, named: None }
+        Link {
+            name: self.name(joint).to_owned(),
+            parent,
+            origin,
+            turns,
+            solids,
+            bare_mass: 0.0,
+            named: None,
+            is_unweighed: false,
+        }
     }
 
     /// Notes what is not as in the file.

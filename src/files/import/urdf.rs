@@ -82,9 +82,20 @@ pub(super) fn links<'a>(root: Node<'a, 'a>, files: &Located, strict: bool) -> Re
             parent = Some(below);
             turns.extend(turn(joint, &frame)?);
         }
-        let (solids, bare_mass, named) = Reader { name, node, frame, files, strict }.solids(&mut notes)?;
+        let reader = Reader { name, node, frame, files, strict };
+        let (solids, bare_mass, named) = reader.solids(&mut notes)?;
+        let is_unweighed = reader.mass()? == 0.0;
         let origin = frame.translation.vector;
-        links.push(Link { name: name.to_owned(), parent, origin, turns, solids, bare_mass, named });
+        links.push(Link {
+            name: name.to_owned(),
+            parent,
+            origin,
+            turns,
+            solids,
+            bare_mass,
+            named,
+            is_unweighed,
+        });
         frames.push(frame);
     }
     Ok(Read { links, notes })
@@ -217,10 +228,7 @@ impl<'a> Reader<'a, '_> {
     /// a link without any, kg; and its mass as it names it.
     fn solids(&self, notes: &mut Vec<String>) -> Result<(Vec<Solid>, f64, Option<Mass>), Wrong> {
         let inertial = child(self.node, "inertial");
-        let mass = match inertial.and_then(|inertial| child(inertial, "mass")) {
-            Some(mass) => self.element().part(mass).needed_number("value")?,
-            None => 0.0,
-        };
+        let mass = self.mass()?;
         let (mut solids, mut missing) = (Vec::new(), None);
         for tag in ["collision", "visual"] {
             let (found, absent) = self.shapes(tag)?;
@@ -242,6 +250,14 @@ impl<'a> Reader<'a, '_> {
         let (solids, bare_mass) =
             settled(label, solids, mass, missing.as_deref(), inertia_box, self.strict, notes)?;
         Ok((solids, bare_mass, named))
+    }
+
+    /// The mass that the link names, kg; 0 if it names none.
+    fn mass(&self) -> Result<f64, Wrong> {
+        match child(self.node, "inertial").and_then(|inertial| child(inertial, "mass")) {
+            Some(mass) => self.element().part(mass).needed_number("value"),
+            None => Ok(0.0),
+        }
     }
 
     /// The shapes that the link has as `tag`, and the first mesh that is not there.

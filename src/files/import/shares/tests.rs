@@ -2,10 +2,10 @@
 
 use std::fs;
 
-use crate::files::body::{BodyFile, DENSITY, InertiaEntry};
+use crate::files::body::{BodyFile, DENSITY, InertiaEntry, PartEntry};
 use crate::files::import::options::{Imported, Options};
 use crate::files::import::read::import;
-use crate::stages::agent::Vector3;
+use crate::stages::agent::{Part, Vector3};
 
 fn imported(name: &str, text: &str, strict: bool) -> Result<Imported, String> {
     let folder = tempfile::tempdir().unwrap();
@@ -53,6 +53,45 @@ fn the_inertia_of_a_link_is_in_the_common_frame() {
     }
 }
 
+/// What the parts weigh together, kg.
+fn weight(text: &str) -> f64 {
+    let Imported { file, .. } = imported("r.urdf", text, true).unwrap();
+    let made = file.body().unwrap().agent.parts;
+    let mass = |(entry, made): (&PartEntry, &Part)| entry.density.unwrap_or(DENSITY) * made.shape.volume();
+    file.parts.iter().zip(&made).map(mass).sum()
+}
+
+#[test]
+fn a_urdf_link_without_a_mass_has_none_where_what_is_fixed_to_it_has_one() {
+    let shape = "<collision><geometry><box size='.5 .3 .2'/></geometry></collision>";
+    let link = |name: &str, mass: &str, shape: &str| {
+        let inertial =
+            if mass.is_empty() { "".into() } else { format!("<inertial><mass value='{mass}'/></inertial>") };
+        format!("<link name='{name}'>{inertial}{shape}</link>")
+    };
+    let robot = |first: &str, second: &str, kind: &str| {
+        let ends = "<parent link='a'/><child link='b'/>";
+        format!("<robot name='r'>{first}{second}<joint name='j' type='{kind}'>{ends}</joint></robot>")
+    };
+    let (bare, small) = ("", shape.replace(".5", ".05"));
+    for (first, second, kind, expected) in [
+        // The mass of the shape is named by a link of its own, as of many published robots; 30 kg of water would come to it.
+        (link("a", "", shape), link("b", "20", bare), "fixed", 20.0),
+        (link("a", "20", bare), link("b", "", shape), "fixed", 20.0),
+        (link("a", "20", bare), link("b", "0", shape), "fixed", 20.0),
+        (link("a", "5", shape), link("b", "", &small), "fixed", 5.0),
+        (link("a", "5", shape), link("b", "", &small), "continuous", 5.0 + 3.0),
+        (link("a", "", shape), link("b", "", &small), "fixed", 30.0 + 3.0),
+    ] {
+        let text = robot(&first, &second, kind);
+        assert!(
+            (weight(&text) - expected).abs() < 1e-4 * expected,
+            "{} is not {expected}: {text}",
+            weight(&text)
+        );
+    }
+}
+
 /// Links on a line along x, each fixed to the one before by a metre.
 fn fixed(links: &[&str]) -> String {
     let link = |(at, inside): (usize, &&str)| format!("<link name='{at}'>{inside}</link>");
@@ -84,7 +123,7 @@ fn links_that_are_fixed_have_the_inertia_of_all_by_the_parallel_axis_theorem() {
         format!("{}{CUBE}", inertial(1.0, 0.1)),
         format!("{}{CUBE}", inertial(3.0, 0.2)),
         inertial(1.0, 0.3),
-        TURNED.to_owned(),
+        format!("<inertial><mass value='1'/></inertial>{TURNED}"),
     ];
     let text = fixed(&links.each_ref().map(|link| &**link));
     let Imported { file, notes, .. } = imported("r.urdf", &text, true).unwrap();
