@@ -12,6 +12,9 @@ INTERVAL, EPOCH = 0.1, 5.0
 # Bootstrap support, in percent, from one to below the other.
 BINS = {"50 to 80 %": (0.5, 0.8), "80 to 95 %": (0.8, 0.95), "95 to 99 %": (0.95, 0.99), "100 %": (1.0, 2.0)}
 
+# The study's design had another seed at its revision.
+NEWER = "Its design is newer ([how to check it out](own-data.md#use-your-own-recording))."
+
 
 def tables():
     """By file and name of its marks: the text between them."""
@@ -64,9 +67,9 @@ def of_bodies():
     source = made("bodies", "reproduce/bodies.sh")
     return {
         ("README.md", "accuracy"): [*shortest(recordings), "", f"[Held out](docs/estimate.md#accuracy): {source[0].lower()}{source[1:]}"],
-        ("docs/own-data.md", "lengths"): [*by_length(recordings), "", source],
+        ("docs/own-data.md", "lengths"): [*by_length(recordings), "", f"{source} {NEWER}"],
         ("docs/own-data.md", "certain"): certain(recordings, edges),
-        ("docs/estimate.md", "accuracy"): [*pooled(recordings), "", source],
+        ("docs/estimate.md", "accuracy"): [*pooled(recordings), "", f"{source} {NEWER}"],
         ("docs/estimate.md", "support"): support(recordings, edges),
     }
 
@@ -196,7 +199,7 @@ def supported(recordings, edges, ends, noise, parts_right):
     key = lambda row: tuple(row[name] for name in ["body", "coordination", "movement", "samples", "noise"])
     wanted = {key(row) for row in recordings if (row["parts_right"] == "true") == parts_right}
     own = [row for row in edges
-           if float(row["noise"]) == noise and key(row) in wanted and ends[0] <= float(row["confidence"]) < ends[1]]
+           if float(row["noise"]) == noise and key(row) in wanted and ends[0] <= float(row["support"]) < ends[1]]
     return rate(own, "right", f"; n = {len(own):,}") if own else "–"
 
 

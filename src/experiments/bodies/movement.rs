@@ -92,7 +92,7 @@ pub(super) struct EdgeRow {
     /// Noise.
     pub noise: f64,
     /// The share of resampled trees with the edge.
-    pub confidence: f64,
+    pub support: f64,
     /// Whether it joins parts that are joined, each estimated part being that of most of its sensors.
     pub right: bool,
 }
@@ -214,7 +214,7 @@ impl Movement<'_> {
             movement: row.movement,
             samples,
             noise,
-            confidence: joints.support(edge),
+            support: joints.support(edge),
             right: joins(labels, edge, &truth),
         };
         let edges = joints.tree.iter().map(edge).collect();

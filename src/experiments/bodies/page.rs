@@ -10,7 +10,7 @@ use crate::report::markdown::{row, rule};
 use crate::report::numbers;
 use crate::report::plot::effects::{Cell, Column, Line};
 
-/// Bins of confidence: from where on, and up to where.
+/// Bins of support: from where on, and up to where.
 const BINS: [(f64, Option<f64>); 6] = [
     (0.0, Some(0.5)),
     (0.5, Some(0.8)),
@@ -82,7 +82,7 @@ impl Page<'_> {
 
     /// The page.
     pub(super) fn text(&self) -> String {
-        [self.methods(), self.by_body(), self.confidences()].concat().join("\n")
+        [self.methods(), self.by_body(), self.supports()].concat().join("\n")
     }
 
     /// How often each method is right.
@@ -150,11 +150,11 @@ impl Page<'_> {
         lines
     }
 
-    /// How often edges are right, by their confidence.
-    fn confidences(&self) -> Vec<String> {
+    /// How often edges are right, by their support.
+    fn supports(&self) -> Vec<String> {
         let mut lines = vec![
             "\n## Is the bootstrap support calibrated?\n".to_owned(),
-            "All edges of all estimated trees, by their bootstrap support (`confidence`): mean support, share of right \
+            "All edges of all estimated trees, by their bootstrap support (`support`): mean support, share of right \
              edges, 95 % interval (Wilson), and number of edges. Support is given the parts: other samples of the same \
              recording do not show that parts are wrong. So edges over right parts and edges over wrong parts are \
              counted apart. An edge is right if it joins parts that are joined, where each estimated part stands for \
@@ -174,7 +174,7 @@ impl Page<'_> {
         lines
     }
 
-    /// How often edges of these recordings are right, by their confidence.
+    /// How often edges of these recordings are right, by their support.
     fn calibration(&self, recording: &Recording, parts_right: bool) -> String {
         let of_row =
             |row: &Row| (row.body.clone(), row.kind.clone(), row.coordination.to_bits(), row.movement);
@@ -260,21 +260,21 @@ fn written(right: usize, n: usize) -> String {
     }
 }
 
-/// Of the edges of some confidence: its mean, the share that is right, and how many there are.
+/// Of the edges of some support: its mean, the share that is right, and how many there are.
 fn bin(edges: &[&EdgeRow], low: f64, high: Option<f64>) -> String {
-    let within = |edge: &&&EdgeRow| edge.confidence >= low && high.is_none_or(|high| edge.confidence < high);
+    let within = |edge: &&&EdgeRow| edge.support >= low && high.is_none_or(|high| edge.support < high);
     let own: Vec<&EdgeRow> = edges.iter().filter(within).copied().collect();
-    let confidences: Vec<f64> = own.iter().map(|edge| edge.confidence).collect();
-    let Some(confidence) = mean(&confidences).value else { return "–".to_owned() };
+    let supports: Vec<f64> = own.iter().map(|edge| edge.support).collect();
+    let Some(support) = mean(&supports).value else { return "–".to_owned() };
     let right = written(own.iter().filter(|edge| edge.right).count(), own.len());
-    format!("{} → {right} of {}", numbers::value(Some(confidence), Some(Unit::Rate)), own.len())
+    format!("{} → {right} of {}", numbers::value(Some(support), Some(Unit::Rate)), own.len())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn edge(confidence: f64, right: bool) -> EdgeRow {
+    fn edge(support: f64, right: bool) -> EdgeRow {
         EdgeRow {
             body: "star".to_owned(),
             kind: None,
@@ -282,13 +282,13 @@ mod tests {
             movement: 1,
             samples: 1000,
             noise: 0.0,
-            confidence,
+            support,
             right,
         }
     }
 
     #[test]
-    fn edges_count_in_the_bin_of_their_confidence() {
+    fn edges_count_in_the_bin_of_their_support() {
         let edges = [edge(1.0, true), edge(1.0, false), edge(0.9975, true), edge(0.5, true)];
         let edges: Vec<&EdgeRow> = edges.iter().collect();
         let bins = BINS.map(|(low, high)| bin(&edges, low, high));
