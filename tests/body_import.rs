@@ -129,6 +129,33 @@ fn a_mistake_is_one_line_and_leaves_no_file() {
         assert!(said.err.starts_with("bodyschema: "), "{name}: {}", said.err);
         assert!(!folder.at("body.toml").exists(), "{name}");
     }
+    // Files that would lead out of the folder, into a loop, or to more text than there is memory.
+    let deep = folder.at("1/2/3/4/5");
+    fs::create_dir_all(&deep).unwrap();
+    fs::copy(data("cut.stl"), folder.at("far.stl")).unwrap();
+    let level = |at: usize| format!("<!ENTITY b{} '{}'>", at + 1, format!("&b{at};").repeat(10));
+    let levels: String = (0..9).map(level).collect();
+    let bomb = |tag: &str| format!("<!DOCTYPE a [<!ENTITY b0 'x'>{levels}]><{tag}>&b9;</{tag}>");
+    let far = "<mujoco><asset><mesh name='m' file='../../../../../far.stl'/></asset>\
+               <worldbody><body name='a'><geom type='mesh' mesh='m'/></body></worldbody></mujoco>";
+    for (name, text, expected) in [
+        ("loop.xml", "<mujoco><include file='loop.xml'/></mujoco>", "which includes this file in turn"),
+        (
+            "bomb.xml",
+            &*bomb("mujoco"),
+            "bomb.xml: this is not well-formed XML: a possible entity reference loop",
+        ),
+        (
+            "bomb.urdf",
+            &*bomb("robot"),
+            "bomb.urdf: this is not well-formed XML: a possible entity reference loop",
+        ),
+        ("far.xml", far, "more than 4 folders above; copy it beside the description"),
+    ] {
+        fs::write(deep.join(name), text).unwrap();
+        import(&folder, &deep.join(name), "").is_refused(expected);
+        assert!(!folder.at("body.toml").exists(), "{name}");
+    }
     let robot = data("robot/urdf/robot.urdf");
     import(&folder, &robot, "--per-area 1e15")
         .is_refused("link `base`: skin.per_area is 1000000000000000, but must be");

@@ -11,6 +11,7 @@ use crate::files::import::xml::Element;
 #[derive(Default)]
 pub(super) struct Beside {
     ties: Vec<String>,
+    followers: Vec<String>,
     soft: Vec<String>,
     plugins: Vec<String>,
 }
@@ -53,6 +54,12 @@ impl Beside {
         }
         for node in section("equality") {
             let tag = node.tag_name().name();
+            if tag == "joint" {
+                let element = defaults.over_as("joint in equality".to_owned(), node, "equality")?;
+                let follower = node.attribute("joint1").filter(|_| element.text("active") != Some("false"));
+                self.followers.extend(follower.map(str::to_owned));
+                continue;
+            }
             if !["connect", "weld"].contains(&tag) {
                 continue;
             }
@@ -76,6 +83,7 @@ impl Beside {
     pub(super) fn notes(&self) -> impl Iterator<Item = String> {
         [
             ("ties between bodies beside the tree are left out", &self.ties),
+            ("joints that follow others (equality) move by themselves", &self.followers),
             ("soft bodies (composite, flex) are no rigid parts and left out", &self.soft),
             ("plugins of bodies are left out", &self.plugins),
         ]

@@ -332,9 +332,12 @@ fn what_a_tree_has_not_or_nobody_knows_is_refused() {
         let loose = tie.replace("/>", " active='false'/>");
         let world = tie.replace("'a'", "'world'");
         let by_default = "<default><equality active='false'/></default>";
-        for (before, tie) in [("", &*loose), ("", &*world), (by_default, tie), ("", "<joint joint1='x'/>")] {
+        let follows = "<joint joint1='x' joint2='y'/>";
+        for (before, tie) in [("", &*loose), ("", &*world), (by_default, tie), (by_default, follows)] {
             assert!(read(before, tie, true).unwrap().notes.is_empty(), "{before} {tie}");
         }
+        let note = "joints that follow others (equality) move by themselves (1): x";
+        assert_eq!(read("", follows, true).unwrap().notes, [note]);
     }
     for (inside, expected) in [
         ("<bodi/>", "bodi of body `a` is unknown here"),

@@ -199,8 +199,19 @@ fn calls_of_macros_that_are_gone_are_left_out_with_a_note() {
     let undeclared = links_of("a") + "<xacro.camera/>";
     assert_eq!(read_in(Path::new(""), &undeclared).unwrap().notes, found.notes);
     for builds in ["<xacro.if value='1'><link name='b'/></xacro.if>", "<xacro.element name='link'/>"] {
-        assert!(read(&(links_of("a") + builds)).unwrap_err().contains("is an element of xacro"), "{builds}");
+        let expected = "is an element of xacro; expand the file first: xacro FILE > robot.urdf";
+        assert!(read(&(links_of("a") + builds)).unwrap_err().contains(expected), "{builds}");
     }
+}
+
+#[test]
+fn joints_that_follow_others_are_noted() {
+    let text = links_of("a b c")
+        + &joint("revolute", "a", "b", "")
+        + &joint("revolute", "a", "c", "<mimic joint='other' multiplier='-1'/>");
+    let notes = read_in(Path::new(""), &text).unwrap().notes;
+    let [note] = &notes[..] else { panic!("{notes:?}") };
+    assert!(note.starts_with("joints that follow others (mimic) move by themselves (1): "), "{note}");
 }
 
 #[test]
