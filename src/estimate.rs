@@ -34,6 +34,7 @@
 mod novelty;
 mod offset;
 mod repeats;
+mod strokes;
 
 use std::fmt;
 
@@ -41,6 +42,7 @@ use rand::Rng;
 
 use self::offset::has_offset;
 pub use self::repeats::{Repeats, repeats};
+use self::strokes::few_at_a_time;
 use crate::recording::Recording;
 use crate::stages::distance::{Distances, information_metric};
 use crate::stages::joints::{Joints, refine};
@@ -60,7 +62,7 @@ const GOOD: f64 = 0.8;
 const DOUBTFUL: f64 = 0.65;
 /// Different values up to which a sensor has levels, such as on and off.
 const LEVELS: usize = 8;
-/// Samples below which a recording is short. About a quarter of such recordings, of movements of people and animals, have a wrong tree
+/// Samples below which a recording is short. About a third of such recordings, of movements of people and animals, have a wrong tree
 /// although rigid motions explain what is felt (docs/own-data.md).
 const SHORT: usize = 1000;
 
@@ -78,7 +80,8 @@ pub enum Verdict {
     Good,
     /// They explain at least 65 % of the sensors.
     Doubtful,
-    /// They explain fewer, sensors do not read 0 at rest, or the movement repeats itself: parts and tree mean nothing.
+    /// They explain fewer, sensors do not read 0 at rest, few sensors feel something at a time, or the movement repeats itself: parts and
+    /// tree mean nothing.
     DoesNotFit,
 }
 
@@ -118,9 +121,10 @@ impl Fit {
             own.filter(|(label, residual)| !parts.unassigned.contains(label) && **residual <= most).count();
         let explained = count as f64 / parts.labels.len() as f64;
         let has_offset = has_offset(&recording.tactile, recording.signed);
+        let is_stroked = !is_noisy && few_at_a_time(&recording.tactile);
         let repeats_itself = comes_back && novelty < LOOP;
         let verdict = match explained {
-            _ if has_offset || repeats_itself => Verdict::DoesNotFit,
+            _ if has_offset || is_stroked || repeats_itself => Verdict::DoesNotFit,
             share if share >= GOOD && recording.tactile.samples >= SHORT && !comes_back => Verdict::Good,
             share if share >= DOUBTFUL => Verdict::Doubtful,
             _ => Verdict::DoesNotFit,
@@ -128,6 +132,7 @@ impl Fit {
         let cause = match verdict {
             Verdict::Good => None,
             _ if has_offset => Some(OFFSET),
+            _ if is_stroked => Some(STROKES),
             _ if repeats_itself => Some(REPETITION),
             _ if explained >= GOOD && comes_back => Some(SIMILARITY),
             _ => Some(cause(&recording.tactile, is_noisy)),
@@ -206,6 +211,9 @@ pub fn estimate(
 
 /// What is the matter if sensors do not read 0 at rest.
 const OFFSET: &str = "sensors do not read 0 at rest, so that their reading there must be subtracted, or a speed has lost its sign";
+
+/// What is the matter if few sensors feel something at a time.
+const STROKES: &str = "few sensors feel something at a time, as where something strokes the skin, or where parts move one after the other, not together";
 
 /// What is the matter if all joints keep step in one rhythm.
 const REPETITION: &str = "the movement repeats itself, so that parts that keep step cannot be told apart";

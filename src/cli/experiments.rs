@@ -18,6 +18,7 @@ use crate::report::claims_table;
 use crate::report::headline::Headline;
 use crate::settings::read_toml;
 use crate::stages::schema::Sampler;
+use crate::tasks::seeds::used_before;
 
 /// Runs an experiment of the paper and judges the paper's claims.
 ///
@@ -147,6 +148,9 @@ impl Bodies {
         }
         prepare_folder(&self.out)?;
         bodies::study(&design, &text, &self.design, &self.out)?;
+        if let Some(used) = used_before(design.seed..=design.seed) {
+            say(used)?;
+        }
         say(format!("All files are in {}; open bodies.md there.", self.out.display()))?;
         Ok(ExitCode::SUCCESS)
     }

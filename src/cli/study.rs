@@ -67,23 +67,28 @@ impl Study {
             return Ok(ExitCode::SUCCESS);
         }
         prepare_folder(out)?;
+        let done = |text: String| {
+            if let Some(used) = used {
+                say(used)?;
+            }
+            say(text)?;
+            Ok(ExitCode::SUCCESS)
+        };
+        let all_files = || format!("All files are in {}; open study.md there.", out.display());
         if let Some(parts) = &self.join {
             study::join(design, &source.text, parts, out)?;
-            say(format!("All files are in {}; open study.md there.", out.display()))?;
-            return Ok(ExitCode::SUCCESS);
+            return done(all_files());
         }
         if !self.gather {
             study::run(&source.text, &configurations, self.shard.unwrap_or(Shard::WHOLE), out)?;
         }
         if self.shard.is_some() {
-            say(format!("This shard is finished, in {}. After all shards, run --gather.", out.display()))?;
-            return Ok(ExitCode::SUCCESS);
+            return done(format!(
+                "This shard is finished, in {}. After all shards, run --gather.",
+                out.display()
+            ));
         }
         study::gather(design, &source.text, &configurations, self.only.is_none(), out)?;
-        if let Some(used) = used {
-            say(used)?;
-        }
-        say(format!("All files are in {}; open study.md there.", out.display()))?;
-        Ok(ExitCode::SUCCESS)
+        done(all_files())
     }
 }
