@@ -267,7 +267,17 @@ fn a_body_is_shown_before_it_moves_with_its_meshes() {
     let robot = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/import/robot/urdf/robot.urdf");
     let said = folder.succeed(&format!("view {robot} --out robot.html"));
     assert!(said.contains("sensors on ") && said.contains("note: link "), "{said}");
-    folder.succeed(&format!("body import {robot} --out robot.toml"));
+    folder.succeed(&format!("body import {robot} --out robot.toml --view imported.html"));
+    assert_eq!(folder.text("imported.html"), folder.text("robot.html"));
+    folder.refuse(
+        &format!("body import {robot} --out b.toml --view {robot}"),
+        "robot.urdf: is the description or the body",
+    );
+    folder.refuse(
+        &format!("body import {robot} --out b.toml --view b.toml"),
+        "b.toml: is the description or the body",
+    );
+    assert!(!folder.at("b.toml").exists());
     folder.succeed("view robot.toml --out page.html");
     for (page, meshes) in [("robot.html", 2), ("page.html", 0)] {
         let page = folder.text(page);

@@ -3,13 +3,15 @@
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use anyhow::Result;
+use anyhow::{Result, ensure};
 use clap::{Args, Subcommand};
 
 use super::options::metres;
 use super::output::say;
+use super::view::show_at_rest;
 use crate::files::body::{BodyFile, JointName};
 use crate::files::import::{Imported, MIN_LENGTH, Options, SKIN, import_into};
+use crate::files::{FileError, is_same_file};
 
 /// Makes files that describe a body, for simulate --body (not in the paper).
 #[derive(Args)]
@@ -58,6 +60,9 @@ struct Import {
     /// File for the body (.toml)
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
+    /// File for a page for a browser (.html): the body at rest with its sensors and meshes, as `view` shows it
+    #[arg(long, value_name = "FILE")]
+    view: Option<PathBuf>,
 }
 
 impl Body {
@@ -71,12 +76,23 @@ impl Body {
 
 impl Import {
     fn run(self) -> Result<ExitCode> {
-        let Self { robot, sensors_per_part, per_area, scale, min_length, root, strict, out } = self;
+        let Self { robot, sensors_per_part, per_area, scale, min_length, root, strict, out, view } = self;
         let options = Options { strict, root, scale, min_length, ..Options::default() }
             .with_skin(sensors_per_part.map(|count| count as usize), per_area);
-        let Imported { file, notes, .. } = import_into(&robot, &out, &options)?;
+        if let Some(view) = &view {
+            ensure!(
+                !is_same_file(&robot, view) && *view != out,
+                "{}: is the description or the body; write the page (--view) to another file",
+                view.display()
+            );
+        }
+        let Imported { file, notes, surfaces } = import_into(&robot, &out, &options)?;
         say(format!("{} parts, in {}", file.parts.len(), out.display()))?;
         say(format!("joints: {}", joints(&file)))?;
+        if let Some(view) = &view {
+            let body = file.body().map_err(|message| FileError::new(&robot, message))?;
+            show_at_rest(&robot, &body, surfaces, view)?;
+        }
         notes.into_iter().try_for_each(|note| say(format!("note: {note}")))?;
         Ok(ExitCode::SUCCESS)
     }

@@ -9,8 +9,8 @@ use clap::Args;
 use super::options::SettingsFile;
 use super::output::say;
 use super::touch::{FormatOptions, say_guesses};
-use crate::files::body::read_body;
-use crate::files::import::{Imported, Options, import};
+use crate::files::body::{NamedBody, read_body};
+use crate::files::import::{Imported, Options, Surface, import};
 use crate::files::{FileError, is_same_file, write_text};
 use crate::report::viewer::at_rest::at_rest;
 use crate::report::viewer::folder::{Sources, read};
@@ -42,6 +42,13 @@ pub(super) struct View {
     /// File for the page [default: view.html in DIR, or FILE.html beside a file]
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
+}
+
+/// Writes a page that shows a body at rest, which was read from `path`, with the surfaces of its meshes.
+pub(super) fn show_at_rest(path: &Path, body: &NamedBody, surfaces: Vec<Surface>, out: &Path) -> Result<()> {
+    let scene = at_rest(body, surfaces);
+    write_text(out, &page(&path.display().to_string(), &[scene.data()]))?;
+    say(format!("{} sensors on {} solids, in {}", scene.sensors, body.agent.parts.len(), out.display()))
 }
 
 impl View {
@@ -93,9 +100,7 @@ impl View {
             let body = file.body().map_err(|message| FileError::new(path, message))?;
             (body, surfaces, notes)
         };
-        let scene = at_rest(&body, surfaces);
-        write_text(out, &page(&path.display().to_string(), &[scene.data()]))?;
-        say(format!("{} sensors on {} solids, in {}", scene.sensors, body.agent.parts.len(), out.display()))?;
+        show_at_rest(path, &body, surfaces, out)?;
         notes.into_iter().try_for_each(|note| say(format!("note: {note}")))?;
         Ok(ExitCode::SUCCESS)
     }
