@@ -19,7 +19,7 @@ try:
     import numpy as np
     from scipy import stats
     from replications import CLAIMS, HEADLINE, MEANING, TOGETHER, Part, default, overrides
-    from surrogate import OVERRIDDEN, Chosen, Surrogate, knowing
+    from surrogate import OVERRIDDEN, Chosen, Means, Surrogate, knowing
 except ModuleNotFoundError as missing:
     sys.exit(f"multiverse: needs {missing.name}; run: pip install -r python/requirements.txt")
 
@@ -39,6 +39,8 @@ ANSWERS = {
 MOVEMENTS = (64, 16, 20)
 # Groups of movements that the jackknife leaves out, one after the other.
 GROUPS = 16
+# Pairs of factors that have an interval and are on the page.
+PAIRS = 5
 # Fewer eligible samples than this give a coarse rate.
 FEW = 5
 # Numbers of choices that differ from the default, for the table of the surroundings.
@@ -65,6 +67,8 @@ def main():
     write(arguments.out / "surrogate.csv", list(errors[0]), errors)
     questions = questions_of(chosen, whole)
     write(arguments.out / "questions.csv", list(questions[0]), questions)
+    pairs = pairs_of(chosen, whole)
+    write(arguments.out / "pairs.csv", list(pairs[0]), pairs)
     deciding = [row["factor"] for row in questions[:3]]
     choices = [row for factor in deciding for row in by_option(whole, factor)]
     write(arguments.out / "choices.csv", list(choices[0]), choices)
@@ -76,7 +80,7 @@ def main():
     rates = distribution(whole)
     write(arguments.out / "distribution.csv", list(rates), [rates])
     (arguments.out / "explorer.html").write_text(explorer(chosen, whole))
-    (arguments.out / "README.md").write_text(page(parts, shares, same, choices, around, questions, errors))
+    (arguments.out / "README.md").write_text(page(parts, shares, same, choices, around, questions, pairs, errors))
 
 
 # ---- Shares
@@ -178,11 +182,8 @@ def errors_of(chosen, part, held_out):
 def questions_of(chosen, part):
     """What would narrow the answers most, if it were known: by factor the share of each answer's variance that knowing it would take
     away, the mean over the answers first. Intervals are by the jackknife over groups of movements."""
-    movements = np.unique(part.movements)
-    groups = np.searchsorted(movements, part.movements) % min(GROUPS, len(movements))
-    # Where the surrogate predicts no better than the mean, it says nothing.
-    asked = {name: [chosen[one] for one in claims if one in chosen and chosen[one][2].error < 1] for name, claims in ANSWERS.items()}
-    asked = {name: found for name, found in asked.items() if found}
+    groups = groups_of(part)
+    asked = asked_of(chosen)
 
     def shares(keep):
         """By answer, then by factor."""
@@ -202,14 +203,65 @@ def questions_of(chosen, part):
     return sorted(rows, key=lambda row: -float(row["all"]))
 
 
+def pairs_of(chosen, part):
+    """By pair of factors the share of each answer's variance that knowing both would take away beyond what each takes away alone, the
+    mean over the answers first, from the largest on. The first PAIRS have an interval, as those of `questions_of`."""
+    groups, asked, count = groups_of(part), asked_of(chosen), len(part.factors)
+
+    def shares(keep, pairs):
+        """By answer, then by pair."""
+        return {name: np.mean([together(part, keep, pairs, *one) for one in found], axis=0) for name, found in asked.items()}
+
+    pairs = [(first, second) for first in range(count) for second in range(first + 1, count)]
+    found = shares(np.full(len(part), True), pairs)
+    mean = np.mean(list(found.values()), axis=0)
+    order = np.argsort(-mean, kind="stable")
+    largest = [pairs[at] for at in order[:PAIRS]]
+    left_out = [np.mean(list(shares(groups != one, largest).values()), axis=0) for one in sorted(set(groups))]
+    rows = []
+    for place, at in enumerate(order):
+        first, second = pairs[at]
+        all_answers = {"all": rounded(mean[at]), "all_low": "", "all_high": ""}
+        if place < PAIRS:
+            all_answers = ends("all", mean[at], [one[place] for one in left_out])
+        rows.append({"factor": part.factors[first], "other": part.factors[second], **all_answers,
+                     **{name: rounded(own[at]) for name, own in found.items()}})
+    return rows
+
+
+def groups_of(part):
+    """The group of movements, for the jackknife, that each configuration is in."""
+    movements = np.unique(part.movements)
+    return np.searchsorted(movements, part.movements) % min(GROUPS, len(movements))
+
+
+def asked_of(chosen):
+    """The surrogates of each answer; not where they predict no better than the mean, since they then say nothing."""
+    asked = {name: [chosen[one] for one in claims if one in chosen and chosen[one][2].error < 1] for name, claims in ANSWERS.items()}
+    return {name: found for name, found in asked.items() if found}
+
+
 def taken(part, keep, rows, values, one):
     """The share of the variance of some values that knowing each factor would take away, by a surrogate of those that are kept."""
+    surrogate, codes, overriding, variance = refitted(part, keep, rows, values, one)
+    return knowing(surrogate, codes, overriding) / variance
+
+
+def together(part, keep, pairs, rows, values, one):
+    """The same of pairs of factors, beyond what each takes away alone."""
+    surrogate, codes, overriding, variance = refitted(part, keep, rows, values, one)
+    means = Means(surrogate, codes, overriding)
+    return np.array([means.taken_together(*pair) for pair in pairs]) / variance
+
+
+def refitted(part, keep, rows, values, one):
+    """A surrogate of the values that are kept, some of their configurations, the factors that override others, and the variance."""
     own = keep[rows]
     codes = part.codes[rows][own]
     surrogate = Surrogate(codes, values[own], one.pairs, one.penalty)
     some = np.random.default_rng(SEED).permutation(len(codes))[:400]
     overriding = [at for at, own in enumerate(overrides(part)) if any(own)]
-    return knowing(surrogate, codes[some], overriding) / values[own].var()
+    return surrogate, codes[some], overriding, values[own].var()
 
 
 def ends(name, value, left_out):
@@ -329,12 +381,13 @@ def percent(value):
     return "–" if value in (None, "") else f"{100 * float(value):.0f} %"
 
 
-def with_ends(row, name="share"):
+def with_ends(row, name="share", decimals=0):
     """A share in percent with its interval, from columns `name` or, of shares, `low` and `high`."""
     low, high = (("low", "high") if name == "share" else (f"{name}_low", f"{name}_high"))
     if not row[name]:
         return "–"
-    return f"{100 * float(row[name]):.0f} % ({100 * float(row[low]):.0f} to {100 * float(row[high]):.0f})"
+    middle, low, high = (f"{100 * float(row[key]):.{decimals}f}" for key in (name, low, high))
+    return f"{middle} % ({low} to {high})"
 
 
 def table(header, rows):
@@ -342,7 +395,7 @@ def table(header, rows):
             *("| " + " | ".join(str(cell) for cell in row) + " |" for row in rows)]
 
 
-def page(parts, shares, same, choices, around, questions, errors):
+def page(parts, shares, same, choices, around, questions, pairs, errors):
     whole, near, held_out = parts.values()
     of = {(row["part"], row["group"], row["claim"]): row for row in shares}
     own = lambda claim, group="all": of["multiverse", group, claim]
@@ -403,6 +456,8 @@ def page(parts, shares, same, choices, around, questions, errors):
             "",
             *table(["choices that differ", "n", "tree accuracy: judged, holds", *(f"{name}: judged, holds" for name in TOGETHER)],
                    by_choice(around, distance_of)),
+            "",
+            *lost(around),
         ]
     else:
         lines += ["The replications near the default have not been run yet."]
@@ -417,6 +472,11 @@ def page(parts, shares, same, choices, around, questions, errors):
         "too small than too large, and \"0 %\" may be \"not told yet\". All: [questions.csv](questions.csv).",
         "",
         *ranking(questions),
+        "",
+        "What two settings do only together comes on top: the second-order terms of Sobol's decomposition. These pairs have the largest shares of the",
+        "variance, as the mean over the answers. All pairs, and each answer: [pairs.csv](pairs.csv).",
+        "",
+        *table(["settings", "share"], [[f"{row['factor']}, with {row['other']}", with_ends(row, "all", 1)] for row in pairs[:PAIRS]]),
         "",
         "## The surrogate",
         "",
@@ -500,6 +560,24 @@ def by_choice(rows, name=lambda row: f"{row['factor']}: {row['option']}"):
         found.setdefault(name(row), {})[row["claim"]] = row
     return [[key, f"{own[HEADLINE]['n']:,}", *(f"{one['judged']}, {with_ends(one)}" if one["judged"] else "0" for one in own.values())]
             for key, own in found.items()]
+
+
+def lost(around):
+    """At which distances it can be told whether a claim holds in more or less than half of the replications that can judge it."""
+    lines, untold = [], []
+    for claim in [HEADLINE, *TOGETHER]:
+        own = [row for row in around if row["claim"] == claim and row["judged"]]
+        name = "headline" if claim == HEADLINE else claim
+        more, less = ([distance_of(row) for row in own if told(row)] for told in
+                      (lambda row: float(row["low"]) > 0.5, lambda row: float(row["high"]) < 0.5))
+        for found, size in ((more, "more"), (less, "less")):
+            if found:
+                lines.append(f"With {', '.join(found)} such choices, the {name} holds in {size} than half of the replications that can judge it.")
+        if not more and not less:
+            untold.append(f"the {name}")
+    if untold:
+        lines.append(f"At no distance do so few movements tell whether {', '.join(untold)} holds in more or less than half of the replications.")
+    return lines
 
 
 def distance_of(row):

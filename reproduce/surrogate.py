@@ -107,24 +107,57 @@ def knowing(surrogate, codes, overriding=()):
     Means are over the configurations `codes` to which a factor applies, each with every option in turn; options count by how often they
     are there. An option of an `overriding` factor would leave the others without a choice, so that means are over those that have it.
     """
-    agree = np.zeros((len(codes), len(surrogate.codes)))
-    matches = [(own[:, None] == other[None, :]) & (own != OVERRIDDEN)[:, None] for own, other in zip(codes.T, surrogate.codes.T)]
-    for match in matches:
-        agree += match
+    means = Means(surrogate, codes, overriding)
+    return np.array([means.taken(factor) for factor in range(codes.shape[1])])
 
-    def predicted(agree):
-        return of_share(agree / codes.shape[1], surrogate.pairs) @ surrogate.weights
 
-    taken = []
-    for factor, own in enumerate(codes.T):
-        applies = own != OVERRIDDEN
-        options, counts = np.unique(own[applies], return_counts=True)
-        if factor in overriding:
-            means = [predicted(agree[own == option]).mean() for option in options]
-        else:
-            rest = (agree - matches[factor])[applies]
-            means = [predicted(rest + (surrogate.codes[:, factor] == option)).mean() for option in options]
-        weights = counts / max(1, counts.sum())
-        middle = np.dot(weights, means)
-        taken.append(applies.mean() * np.dot(weights, (np.array(means) - middle) ** 2))
-    return np.array(taken)
+class Means:
+    """Mean predictions of a surrogate over configurations, in which some choices take the place of their own."""
+
+    def __init__(self, surrogate, codes, overriding=()):
+        self.surrogate, self.codes, self.overriding = surrogate, codes, overriding
+        self.matches = [(own[:, None] == other[None, :]) & (own != OVERRIDDEN)[:, None]
+                        for own, other in zip(codes.T, surrogate.codes.T)]
+        self.agree = np.sum(self.matches, axis=0, dtype=float)
+
+    def options(self, factor):
+        """Its options, and how often they are there."""
+        own = self.codes[:, factor]
+        found, counts = np.unique(own[own != OVERRIDDEN], return_counts=True)
+        return found, counts / max(1, counts.sum())
+
+    def mean(self, chosen):
+        """With these options of some factors, over the configurations to which the factors apply; None if there are none."""
+        keep = np.full(len(self.codes), True)
+        for factor, option in chosen.items():
+            own = self.codes[:, factor]
+            keep &= own == option if factor in self.overriding else own != OVERRIDDEN
+        if not keep.any():
+            return None
+        agree = self.agree[keep]
+        for factor, option in chosen.items():
+            if factor not in self.overriding:
+                agree = agree - self.matches[factor][keep] + (self.surrogate.codes[:, factor] == option)
+        return float((of_share(agree / self.codes.shape[1], self.surrogate.pairs) @ self.surrogate.weights).mean())
+
+    def applies(self, *factors):
+        """The share of the configurations to which all of some factors apply."""
+        return (self.codes[:, factors] != OVERRIDDEN).all(axis=1).mean()
+
+    def taken(self, factor):
+        """The variance that knowing a factor would take away."""
+        options, weights = self.options(factor)
+        means = np.array([self.mean({factor: option}) for option in options])
+        return self.applies(factor) * np.dot(weights, (means - np.dot(weights, means)) ** 2) if len(options) else 0.0
+
+    def taken_together(self, first, second):
+        """The variance that knowing two factors would take away beyond that of each alone (the second-order term of Sobol's
+        decomposition); 0 if one leaves the other without a choice."""
+        options, weights = zip(self.options(first), self.options(second))
+        means = [[self.mean({first: one, second: other}) for other in options[1]] for one in options[0]]
+        if not means or not means[0] or any(mean is None for row in means for mean in row):
+            return 0.0
+        means = np.array(means)
+        rows, columns = means @ weights[1], weights[0] @ means
+        left = means - rows[:, None] - columns[None, :] + weights[0] @ rows
+        return self.applies(first, second) * float(weights[0] @ left**2 @ weights[1])

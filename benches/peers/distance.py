@@ -47,20 +47,23 @@ def numpy_seconds(levels, measurements=2):
     return min(measure() for _ in range(measurements))
 
 
-def quantised(pressures, levels):
-    """Level 0 is no pressure; the others share each sensor's positive pressures equally, as `bodyschema distance` has it."""
+def quantised(pressures, levels, scheme):
+    """Level 0 is no pressure; the others share the positive pressures equally, as `bodyschema distance` has it: those of all sensors
+    together (pooled), or of each sensor (per-sensor)."""
     symbols = np.zeros(pressures.shape, dtype=np.uint8)
+    limits_of = lambda felt: np.quantile(felt, np.arange(1, levels - 1) / (levels - 1))
+    pooled = limits_of(pressures[pressures > 0]) if scheme == "pooled" else None
     for sensor, series in enumerate(pressures.T):
         felt = series[series > 0]
         if len(felt):
-            limits = np.quantile(felt, np.arange(1, levels - 1) / (levels - 1))
+            limits = limits_of(felt) if pooled is None else pooled
             symbols[:, sensor] = (series > 0) * (1 + np.searchsorted(limits, series, side="right"))
     return symbols
 
 
-def command(tactile, levels, out):
+def command(tactile, levels, scheme, out):
     """What a user would write in place of `bodyschema distance`: a file of pressures -> a file of distances."""
-    np.save(out, one_hot_metric(quantised(np.load(tactile), levels), levels))
+    np.save(out, one_hot_metric(quantised(np.load(tactile), levels, scheme), levels))
 
 
 def sklearn_seconds(levels):

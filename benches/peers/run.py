@@ -4,7 +4,8 @@ Run: pip install -r benches/peers/requirements.txt
      python benches/peers/run.py [--experiment] [--rounds N]
 
 Takes about six minutes a round on two cores, and five more with --experiment, which times experiment 1 with one simulation.
-Ours and its peer run one after the other, three times or as --rounds says; the table has the medians of both and of their ratios.
+Ours and its peer run one after the other, three times or as --rounds says; the table has the medians of both and of their ratios, with
+the lowest and the highest ratio.
 """
 
 import functools
@@ -67,28 +68,32 @@ def clocked(*command):
 
 
 @functools.cache
-def whole(folder, levels, round):
+def whole(folder, levels, scheme, round):
     """Seconds of `bodyschema distance` from file to file."""
-    return clocked(program, "distance", folder / "body/tactile.npy", "--levels", levels, "--out", folder / "distance.npy")
+    options = ["--levels", levels, "--scheme", scheme, "--out", folder / "distance.npy"]
+    return clocked(program, "distance", folder / "body/tactile.npy", *options)
 
 
-def command(levels):
+def command(levels, scheme):
     def run(folder, round):
-        call = f"distance.command({str(folder / 'body/tactile.npy')!r}, {levels}, {str(folder / 'peer.npy')!r})"
+        call = f"distance.command({str(folder / 'body/tactile.npy')!r}, {levels}, {scheme!r}, {str(folder / 'peer.npy')!r})"
         code = f"import sys; sys.path.insert(0, {str(peers)!r}); import distance; {call}"
-        return whole(folder, levels, round), clocked(sys.executable, "-c", code)
+        return whole(folder, levels, scheme, round), clocked(sys.executable, "-c", code)
 
     return run
 
 
 def levels(count):
     """The same with other numbers of levels, beside 4."""
-    return lambda folder, round: (whole(folder, 4, round), whole(folder, count, round))
+    return lambda folder, round: (whole(folder, 4, POOLED, round), whole(folder, count, POOLED, round))
 
 
-def map_840(_, round):
-    ours = seconds(bench("map", round), r"840 sensors.*: ([\d.]+) ms", 1e-3)
-    return ours, peer("map", "map.statistics.median(map.eigh(m) for m in [map.distances(840)] * 11)")
+def map_840(function):
+    def run(_, round):
+        ours = seconds(bench("map", round), r"840 sensors.*: ([\d.]+) ms", 1e-3)
+        return ours, peer("map", f"map.statistics.median(map.{function}(m) for m in [map.distances(840)] * 11)")
+
+    return run
 
 
 def majorisation(_, round):
@@ -109,16 +114,22 @@ def schema(call, sampler=""):
     return run
 
 
+# Limits of levels for all sensors together, the default, and for each sensor.
+POOLED, OWN = "pooled", "per-sensor"
+
 STAGES = [
     ("simulate + sense", "1,000,000 steps, 100,000 x 840 pressures, torque", "bare loop of dWorldStep, in C", simulate("torque")),
     ("simulate + sense", "the same, servo", "the same", simulate("servo")),
     ("simulate + sense", "the same, servo", "the same, locks limited to 1000 N m", simulate("servo", "1000")),
-    ("`bodyschema distance`", "a file of 336 MB of a body, N = 4, to a file", "NumPy, from file to file", command(4)),
-    ("`bodyschema distance`", "the same, N = 8", "NumPy, from file to file", command(8)),
+    ("`bodyschema distance`", "a file of 336 MB of a body, N = 4, to a file", "NumPy, from file to file", command(4, POOLED)),
+    ("`bodyschema distance`", "the same, N = 8", "NumPy, from file to file", command(8, POOLED)),
+    ("`bodyschema distance`", "the same, N = 8, limits of levels for each sensor", "NumPy, from file to file", command(8, OWN)),
     *(("`bodyschema distance`", "the same, N = 4", f"itself at N = {count}", levels(count)) for count in (2, 8, 10, 16, 32, 64, 128, 256)),
     ("distance", "840 sensors, T = 100,000, N = 4", "NumPy one-hot product", distance(4)),
     ("distance", "the same, N = 8", "NumPy one-hot product", distance(8)),
-    ("map", "840 sensors to 15 dimensions", "numpy.linalg.eigh", map_840),
+    ("map", "840 sensors to 15 dimensions", "numpy.linalg.eigh", map_840("eigh")),
+    ("map", "the same", "scipy.linalg.eigh, 15 pairs by LAPACK's dsyevr", map_840("dsyevr")),
+    ("map", "the same", "scipy.sparse.linalg.eigsh, 15 pairs by ARPACK", map_840("eigsh")),
     ("map", "840 sensors to 14 dimensions, 300 steps of majorisation", "scikit-learn's smacof", majorisation),
     ("map", "the same, 30 nonmetric steps", "scikit-learn's smacof", nonmetric),
     ("schema", "a sweep of DPGMM-LJ, n = 840, d = 14, K = 10, one core", "NumPy and SciPy", schema("schema.numpy_seconds()")),
@@ -138,8 +149,9 @@ def main():
         for stage, work, other, run in STAGES:
             pairs = [run(folder, round) for round in range(ROUNDS)]
             ours, theirs = (statistics.median(times) for times in zip(*pairs))
-            ratio = statistics.median(theirs / ours for ours, theirs in pairs)
-            print(f"| {stage} | {work} | {ours:.3g} | {other} | {theirs:.3g} | {ratio:.3g} |", flush=True)
+            ratios = [theirs / ours for ours, theirs in pairs]
+            ratio = f"{statistics.median(ratios):.3g} ({min(ratios):.3g} to {max(ratios):.3g})"
+            print(f"| {stage} | {work} | {ours:.3g} | {other} | {theirs:.3g} | {ratio} |", flush=True)
         if "--experiment" in sys.argv:
             log = subprocess.run(
                 ["/usr/bin/time", "-f", "%e s, %M kB", "cargo", "run", "--quiet", "--release", "--", "reproduce"]

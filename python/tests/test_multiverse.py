@@ -67,6 +67,15 @@ def test_knowing_a_factor_takes_away_its_share_of_the_variance():
     assert surrogate.knowing(fitted, codes[::4]) == pytest.approx(expected, abs=0.04)
 
 
+def test_what_two_factors_do_only_together_is_told_of_them_alone():
+    codes, exact, values, _ = made_up(200, 4)
+    means = surrogate.Means(surrogate.Surrogate(codes, values, 0.5, 0.1), codes[::4])
+    # Of a product of two indicators of 1/3, times 2.
+    assert means.taken_together(3, 4) == pytest.approx(4 * (2 / 9) ** 2, abs=0.04)
+    others = [means.taken_together(first, second) for first in range(7) for second in range(first + 1, 7) if (first, second) != (3, 4)]
+    assert max(others) < 0.02
+
+
 def test_knowing_a_factor_that_overrides_another_counts_what_goes_with_it():
     """With its option 1, the next factor has no choice, and the value is 1 more on average."""
     random = np.random.default_rng(6)
