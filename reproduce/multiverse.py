@@ -576,7 +576,7 @@ def lost(around):
         if not more and not less:
             untold.append(f"the {name}")
     if untold:
-        lines.append(f"At no distance do so few movements tell whether {', '.join(untold)} holds in more or less than half of the replications.")
+        lines.append(f"So few movements do not tell at any distance whether these hold in more or less than half of the replications: {', '.join(untold)}.")
     return lines
 
 
