@@ -10,6 +10,7 @@ It updates
   It needs no run;
 - docs/settings.md: the table of open settings, from paper.toml, sensitivity.toml and docs/shown/searches.csv. It needs no run;
 - docs/shown/claims.md: the paper's sentences, claims and verdicts, from claims.toml and docs/shown. It needs no run;
+- docs/shown/numbers/: the constants of `estimate`, from the code. It needs no run;
 - article/values.toml: the numbers of the article, from docs/shown. It needs no run.
 
 What RESULTS does not hold is skipped, with a line on standard error. Needs Python 3.11, and no packages.
@@ -70,7 +71,7 @@ def main():
         between_marks(ROOT / page, name, "\n".join(lines))
     multiverse()
     open_settings()
-    for script in ["reproduce/claims.py", "article/values.py"]:
+    for script in ["reproduce/claims.py", "reproduce/numbers.py", "article/values.py"]:
         if status := subprocess.run([sys.executable, ROOT / script]).returncode:
             sys.exit(status)
 

@@ -60,21 +60,28 @@ def found(file, design):
 
 def page(rows, design):
     """The page: bad results first."""
+    urls = {one["name"]: one["url"] for one in design["recording"]}
     lines = [
         "# Recorded movements",
         "",
         f"Made by `reproduce/recordings.py` with revision {revisions(rows)}.",
         "Each movement was recorded by others; the skin is virtual, without noise. Bones of at least",
-        f"{design['min_length']} m carry 40 sensors each. [recordings.toml](../../../reproduce/recordings.toml) has the sources, and says",
-        "what each recording was used for. A joint is right if it joins parts that turn about one place, and a tree if its parts",
-        "and joints are. The lowest adjusted Rand index comes first.",
+        f"{design['min_length']} m carry 40 sensors each. A name leads to the file, and [recordings.toml](../../../reproduce/recordings.toml) says",
+        "how recordings were chosen, and what each was used for. No number of the method was chosen on those that are held out, but",
+        "earlier revisions were counted on them, too.",
+        "A joint is right if it joins parts that turn about one place, and a tree if its parts",
+        "and joints are. The lowest adjusted Rand index comes first. Of one file, the script does this:",
+        "",
+        f"    bodyschema body import FILE.bvh --min-length {design['min_length']} --out body.toml",
+        f"    bodyschema simulate --body body.toml --movement FILE.bvh --seed {design['seed']} --out felt",
+        f"    bodyschema estimate felt/tactile.npy --labels felt/labels.csv --tree felt/tree.csv --seed {design['seed']} --out found --force",
         "",
         "| recording | use | T × M | fit | true parts | parts found | adjusted Rand index | joints right | tree |",
         "|---|---|---|---|---|---|---|---|---|",
     ]
     for row in sorted(rows, key=lambda row: float(row["ari"])):
         size = f"{int(row['samples']):,} × {int(row['sensors']):,}"
-        cells = [row["recording"], row["use"], size, row["fit"], *outcome(row)]
+        cells = [f"[{row['recording']}]({urls[row['recording']]})", row["use"], size, row["fit"], *outcome(row)]
         lines.append("| " + " | ".join(str(cell) for cell in cells) + " |")
     for what, own in [("all", rows), ("held out", [row for row in rows if row["use"] == "held out"])]:
         if not own:

@@ -6,6 +6,8 @@ use std::fs;
 use std::path::Path;
 
 use crate::support::repository::{pages, read, repository};
+use crate::support::said::Said;
+use crate::support::tools::python;
 
 /// Numbered equations of the paper.
 const EQUATIONS: usize = 27;
@@ -103,4 +105,11 @@ fn the_page_of_settings_has_every_setting_that_is_ours_with_its_value() {
         }
     }
     assert!(ours >= 30, "{ours}");
+}
+
+#[test]
+fn the_page_of_numbers_has_the_constants_of_the_code() {
+    let Some(mut script) = python(&repository("reproduce/numbers.py")) else { return };
+    let said = Said::by(script.arg("--check"));
+    assert_eq!(said.status, Some(0), "{said:?}");
 }
