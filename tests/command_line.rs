@@ -8,7 +8,7 @@ use bodyschema::stages::distance::Distances;
 use bodyschema::stages::sense::Tactile;
 
 use crate::support::folder::Folder;
-use crate::support::repository::repository;
+use crate::support::repository::{read, repository};
 use crate::support::small::{separated_clusters, small};
 
 /// The small body for longer, so that its parts and tree are found.
@@ -50,7 +50,7 @@ fn one_command_finds_parts_and_tree() {
         folder.run("estimate own.npy --labels body/labels.csv --tree body/tree.csv --repeats 2 --out found");
     assert_eq!(said.status, Some(0), "{said:?}");
     assert!(said.out.starts_with("fit: good: rigid motions explain "), "{said:?}");
-    assert!(said.out.contains("5 parts of 117 sensors"), "{said:?}");
+    assert!(said.out.contains("5 parts of 117 sensors") && !said.out.contains("16 and more"), "{said:?}");
     assert!(said.out.contains("adjusted Rand index 1.000, true tree recovered"), "{said:?}");
     assert!(said.err.contains("3 of 120 sensors are left out (the first, 0, is dead)"), "{said:?}");
     assert!(said.err.contains("(1.89 %) are missing of the sensors that are used; they are not"), "{said:?}");
@@ -103,6 +103,18 @@ fn one_command_finds_parts_and_tree() {
     assert!(!folder.at("found/tree.csv").exists() && !folder.at("found/report.html").exists());
     assert!(!folder.at("found/repeats.csv").exists());
     assert!(folder.at("found/parts.csv").exists());
+}
+
+#[test]
+fn a_part_of_few_sensors_is_named() {
+    let folder = Folder::new();
+    folder.write("small.toml", read("bodies/chain-3.toml").replace("sensors = 40", "sensors = 14"));
+    folder.write("random.toml", "motion.coordination = 0.0\n");
+    folder.succeed("simulate --body small.toml --settings random.toml --duration 100 --seed 1 --out body");
+    let said = folder.succeed("estimate body/tactile.npy --out found");
+    let expected =
+        "part 0, the first of 3 such parts, has 14 sensors; 16 and more are needed to rely on a part";
+    assert!(said.contains(expected), "{said}");
 }
 
 #[test]

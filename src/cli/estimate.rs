@@ -62,6 +62,8 @@ struct DroppedRow {
 
 /// The exit status where rigid parts do not explain the recording.
 const NO_FIT: u8 = 1;
+/// Sensors that a part should have, of which about half feel something at a time (docs/own-data.md).
+const ENOUGH: usize = 16;
 
 /// A row of parts.csv.
 #[derive(Serialize)]
@@ -207,6 +209,20 @@ fn say_found(
             "no two parts can be distinguished: the residual variance of a single rigid motion is {:.1} %{}",
             100.0 * residual,
             if residual < 0.05 { "; no joint seems to move" } else { "" }
+        ))?;
+    }
+    let sensors = |part: usize| found.parts.labels.iter().filter(|label| **label == part).count();
+    let small: Vec<usize> =
+        found.joints.ranks.keys().copied().filter(|&part| sensors(part) < ENOUGH).collect();
+    if let (Some(&part), true) = (small.first(), parts > 1) {
+        let others = if small.len() > 1 {
+            format!(", the first of {} such parts,", small.len())
+        } else {
+            String::new()
+        };
+        say(format!(
+            "part {part}{others} has {} sensors; {ENOUGH} and more are needed to rely on a part",
+            sensors(part)
         ))?;
     }
     tree::print(&found.joints, &found.parts.labels)?;
