@@ -71,6 +71,7 @@ def of_bodies():
         ("docs/own-data.md", "certain"): certain(recordings, edges),
         ("docs/estimate.md", "accuracy"): [*pooled(recordings), "", f"{source} {NEWER}"],
         ("docs/estimate.md", "support"): support(recordings, edges),
+        ("docs/estimate.md", "sure"): sure(recordings, edges),
     }
 
 
@@ -191,6 +192,19 @@ def certain(recordings, edges):
     for name, noise in [("no noise", 0.0), ("noise of 10 %", 0.1)]:
         cells = [supported(recordings, edges, BINS["100 %"], noise, right) for right in (True, False)]
         lines.append(f"| {name} | {' | '.join(cells)} |")
+    return lines
+
+
+def sure(recordings, edges):
+    """How often edges with a support of 95 % and more are right, whatever the parts, by length, noise and p."""
+    coordinations = sorted({row["coordination"] for row in edges}, key=float)
+    lines = [f"| T | noise | {' | '.join(f'p = {float(p):g}' for p in coordinations)} |", f"|---|---|{'---|' * len(coordinations)}"]
+    certain = [row for row in edges if float(row["support"]) >= 0.95]
+    for samples, noise in kinds(recordings):
+        rows = of(certain, samples, noise)
+        own = [[row for row in rows if row["coordination"] == p] for p in coordinations]
+        cells = [rate(one, "right", f"; n = {len(one):,}") for one in own]
+        lines.append(f"| {samples:,} | {noise:g} | {' | '.join(cells)} |")
     return lines
 
 
