@@ -170,15 +170,19 @@ fn trees(nodes: usize) -> Vec<Vec<(usize, usize)>> {
     subsets.map(edges).filter(connected).collect()
 }
 
+/// The number of trees over so many nodes (Cayley).
+fn cayley(nodes: usize) -> f64 {
+    (nodes as f64).powf(nodes as f64 - 2.0)
+}
+
 /// A partition with a tree over its clusters, in order of their first points.
 type Schema = (Vec<usize>, Vec<(usize, usize)>);
 
 /// Probabilities, not normalised, of all partitions of the points with all trees; Gaussians are integrated out by many
-/// draws from their posterior. `trees_count` says by how many trees the prior of a tree divides.
+/// draws from their posterior.
 fn exact_trees(
     points: &Points,
     prior: &NormalInverseWishart,
-    trees_count: impl Fn(f64) -> f64,
     weight: impl Fn(&Gaussian, &Gaussian) -> f64,
 ) -> BTreeMap<Schema, f64> {
     const DRAWS: usize = 6_000;
@@ -200,7 +204,7 @@ fn exact_trees(
                 *sum += tree.iter().map(|&(i, j)| weights[i][j]).product::<f64>();
             }
         }
-        let mixture = log_mixture(&clusters).exp() / trees_count(clusters.len() as f64);
+        let mixture = log_mixture(&clusters).exp() / cayley(clusters.len());
         for (tree, sum) in trees.into_iter().zip(sums) {
             exact.insert((labels.clone(), tree), mixture * sum / DRAWS as f64);
         }
@@ -213,13 +217,11 @@ fn the_chain_visits_every_partition_of_six_points_with_every_tree_as_often_as_th
     let (points, prior) = line(&[-3.0, -2.5, -1.2, 1.0, 1.6, 3.1]);
     let joint = |s: &Gaussian, c: &Gaussian| (-collapsed_cost(&s.moments(), &c.moments()).unwrap()).exp();
     let one_sided = |s: &Gaussian, c: &Gaussian| s.log_density(c.mean().as_slice()).exp();
-    let cayley = |count: f64| count.powf(count - 2.0);
-    let exact = exact_trees(&points, &prior, cayley, joint);
     let target = target(&points, &prior, Model::DpgmmLj);
-    let p_value = |exact: &BTreeMap<Schema, f64>, mutant: Mutant| {
+    let visits = |mutant: Mutant| -> Vec<Schema> {
         let mut rng = stream(5, 1, "trees", 1);
         let mut chain = SplitMerge::start(&target, &[0; 6], &mut rng).unwrap();
-        let visits = (0..6_000).map(|_| {
+        let visit = |_| {
             (0..10).for_each(|_| mutant.sweep(&mut chain, &mut rng));
             let labels = named_by_appearance(&chain.labels);
             let name = |k: usize| labels[chain.clusters[k].members[0]];
@@ -232,22 +234,28 @@ fn the_chain_visits_every_partition_of_six_points_with_every_tree_as_often_as_th
             // In the order of `trees`.
             tree.sort_unstable();
             (labels, tree)
-        });
-        fit(exact, visits.collect::<Vec<_>>().into_iter())
+        };
+        (0..6_000).map(visit).collect()
     };
+    let (exact, (forgotten, (right, wrong))) = rayon::join(
+        || exact_trees(&points, &prior, joint),
+        || {
+            rayon::join(
+                || exact_trees(&points, &prior, one_sided),
+                || rayon::join(|| visits(Mutant::None), || visits(Mutant::NoJoints)),
+            )
+        },
+    );
+    let p_value = |target: &BTreeMap<Schema, f64>, visits: &[Schema]| fit(target, visits.iter().cloned());
+    let right_p = p_value(&exact, &right);
+    assert!(right_p > ALPHA, "{right_p}");
     // Each in turn has a mistake: the chain; the target, without the prior of trees; and the target, with the weight of a parent whose
     // covariance is forgotten.
-    let wrong: [&(dyn Fn() -> f64 + Sync); 3] = [
-        &|| p_value(&exact, Mutant::NoJoints),
-        &|| p_value(&exact_trees(&points, &prior, |_| 1.0, joint), Mutant::None),
-        &|| p_value(&exact_trees(&points, &prior, cayley, one_sided), Mutant::None),
-    ];
-    let (right, wrong) = rayon::join(
-        || p_value(&exact, Mutant::None),
-        || wrong.par_iter().map(|p_value| p_value()).collect::<Vec<f64>>(),
-    );
-    assert!(right > ALPHA, "{right}");
-    assert!(wrong.iter().all(|p_value| *p_value < ALPHA), "{wrong:?}");
+    let without_prior =
+        exact.iter().map(|(schema, mass)| (schema.clone(), mass * cayley(schema.1.len() + 1)));
+    let wrong_p =
+        [p_value(&exact, &wrong), p_value(&without_prior.collect(), &right), p_value(&forgotten, &right)];
+    assert!(wrong_p.iter().all(|p_value| *p_value < ALPHA), "{wrong_p:?}");
 }
 
 mod joint_distribution;
