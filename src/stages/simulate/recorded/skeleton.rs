@@ -10,6 +10,8 @@ use crate::stages::agent::Vector3;
 
 /// Share of its length by which a bone may stretch and still be one.
 const STRETCH: f64 = 0.05;
+/// The same, root mean square, about its mean. Suits of inertial sensors write joints that drift apart by some centimetres.
+const DRIFT: f64 = 0.25;
 /// Share of the longest offset that is no travel, but rounding.
 const ROUNDING: f64 = 1e-4;
 
@@ -130,9 +132,10 @@ impl RecordedMovement {
         placed
     }
 
-    /// Where a joint is on what carries it: its offset or, if it is always elsewhere, where its position channels say. `None`
-    /// of the first joint, and of one that travels by more than a twentieth of that distance. On the first joint, which may be a
-    /// mark on the floor, a joint travels if it moves at all.
+    /// Where a joint is on what carries it: its offset or, if it is always elsewhere, where its position channels say, at the first frame or
+    /// on average. `None` of the first joint, and of one that travels: by more than a twentieth of that distance, and by more than a
+    /// quarter of it on average. The only one with position channels on the first joint, which may
+    /// be a mark on the floor, travels if it moves at all.
     pub fn bone(&self, joint: usize) -> Option<Column<f64>> {
         let RecordedJoint { parent, offset, .. } = &self.joints[joint];
         let offset = Column::from(*offset);
@@ -142,10 +145,18 @@ impl RecordedMovement {
         }
         let longest = self.joints.iter().map(|joint| Column::from(joint.offset).norm()).fold(0.0, f64::max);
         let place = |frame: usize| self.local(joint, frame).translation.vector;
-        [offset, place(0)].into_iter().find(|rest| {
-            let stretch = if *parent == Some(0) { 0.0 } else { STRETCH * rest.norm() };
-            let most = stretch + ROUNDING * longest;
-            (0..self.frames()).all(|frame| (place(frame) - rest).norm() <= most)
+        let places = || (0..self.frames()).map(place);
+        let on_first = self.joints.iter().filter(|joint| joint.parent == Some(0) && joint.is_placed());
+        let is_on_mark = *parent == Some(0) && on_first.count() == 1;
+        let steady = [offset, place(0)].into_iter().find(|rest| {
+            let stretch = if is_on_mark { 0.0 } else { STRETCH * rest.norm() };
+            places().all(|place| (place - rest).norm() <= stretch + ROUNDING * longest)
+        });
+        steady.or_else(|| {
+            let mean = places().sum::<Column<f64>>() / self.frames() as f64;
+            let variance =
+                places().map(|place| (place - mean).norm_squared()).sum::<f64>() / self.frames() as f64;
+            (!is_on_mark && variance.sqrt() <= DRIFT * mean.norm()).then_some(mean)
         })
     }
 

@@ -68,11 +68,12 @@ fn a_joint_that_travels_has_no_bone_to_it() {
         assert_eq!((movement.bone(0), movement.bone(1)), (None, Some(Column::x())));
         movement.bone(2)
     };
-    // It stays, stretches a little, is always elsewhere than its offset, or travels.
+    // It stays, stretches a little, is always elsewhere than its offset, drifts, or travels.
     assert_eq!(bone(1, [2.0, 1.0, 0.0], &[2.0, 2.0]), Some(Column::new(2.0, 1.0, 0.0)));
     assert_eq!(bone(1, [2.0, 1.0, 0.0], &[2.1, 1.9]), Some(Column::new(2.0, 1.0, 0.0)));
     assert_eq!(bone(1, [0.0, 1.0, 0.0], &[5.0, 5.1]), Some(Column::new(5.0, 1.0, 0.0)));
-    assert_eq!(bone(1, [2.0, 1.0, 0.0], &[2.0, 2.2]), None);
+    assert_eq!(bone(1, [2.0, 1.0, 0.0], &[2.0, 2.5]), Some(Column::new(2.25, 1.0, 0.0)));
+    assert_eq!(bone(1, [2.0, 1.0, 0.0], &[2.0, 4.0]), None);
     // On a mark on the floor, a body may do little more than breathe.
     assert_eq!(bone(0, [2.0, 1.0, 0.0], &[2.0001, 2.0]), Some(Column::new(2.0, 1.0, 0.0)));
     assert_eq!(bone(0, [2.0, 1.0, 0.0], &[2.01, 2.0]), None);
