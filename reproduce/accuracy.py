@@ -95,19 +95,20 @@ def made(folder, command):
 
 
 def of_recordings():
-    moved = shown("recordings")
+    moved, recordings = shown("recordings"), design("recordings")["recording"]
     held_out = of_use("held out", moved)
-    most, seed = max(int(row["samples"]) for row in held_out), design("recordings")["seed"]
+    counts, seed = [int(row["samples"]) for row in held_out], design("recordings")["seed"]
     doubtful = sum(row["fit"] == "doubtful" for row in held_out)
     which = "All" if doubtful == len(held_out) else doubtful
-    failed = [one["name"] for one in design("recordings")["recording"] if "held_out_until" in one]
+    failed = [one["name"] for one in recordings if "held_out_until" in one]
+    further = {one["name"] for one in recordings if one.get("further")}
     right = sum(row["tree_right"] == "true" for row in held_out)
     more = f", {right} of {len(held_out) + len(failed)} with {', '.join(failed)}, examined since" if failed else ""
     found = [
-        f"Held-out [recorded movements](docs/own-data.md#recorded-movements), at most {most} samples: trees right in",
+        f"Held-out [recorded movements](docs/own-data.md#recorded-movements), {min(counts)} to {max(counts):,} samples: trees right in",
         f"{trees_right(held_out)}{more}. {which} fits are doubtful. Seed {seed}; `reproduce/recordings.py` of revision {revisions(held_out)}.",
     ]
-    return {("README.md", "recorded"): found, ("docs/own-data.md", "recorded"): recorded(moved)}
+    return {("README.md", "recorded"): found, ("docs/own-data.md", "recorded"): recorded(moved, further)}
 
 
 def design(name):
@@ -217,18 +218,24 @@ def supported(recordings, edges, ends, noise, parts_right):
     return rate(own, "right", f"; n = {len(own):,}") if own else "–"
 
 
-def recorded(moved):
-    """What came out of recorded movements, by use and length."""
-    lines = ["| recordings | samples | mean adjusted Rand index | tree right | revision |", "|---|---|---|---|---|"]
-    for use in USES:
-        for name, is_long in [("fewer than 1,000 samples", False), ("1,000 samples or more", True)]:
-            own = [row for row in of_use(use, moved) if (int(row["samples"]) >= 1000) == is_long]
+def recorded(moved, further):
+    """What came out of recorded movements, by use, collection and length."""
+    groups = [
+        ("held out, one collection of acted movements", [row for row in of_use("held out", moved) if row["recording"] not in further]),
+        ("held out, twelve further collections", [row for row in of_use("held out", moved) if row["recording"] in further]),
+        ("calibration", of_use("calibration", moved)),
+    ]
+    lines = ["| recordings | samples | mean adjusted Rand index | parts right | tree right | revision |", "|---|---|---|---|---|---|"]
+    for name, rows in groups:
+        for length, is_long in [("fewer than 1,000 samples", False), ("1,000 samples or more", True)]:
+            own = [row for row in rows if (int(row["samples"]) >= 1000) == is_long]
             if own:
                 counts = [int(row["samples"]) for row in own]
                 mean = sum(float(row["ari"]) for row in own) / len(own)
-                cells = [f"{use}, {name}", f"{min(counts):,} to {max(counts):,}", f"{mean:.3f}", trees_right(own), revisions(own)]
+                parts = interval(sum(row["parts"] == row["true_parts"] for row in own), len(own))
+                cells = [f"{name}, {length}", f"{min(counts):,} to {max(counts):,}", f"{mean:.3f}", parts, trees_right(own), revisions(own)]
                 lines.append(f"| {' | '.join(cells)} |")
-    return [*lines, "", "Made by `reproduce/recordings.py`."]
+    return [*lines, "", "Parts count as right here if their number is. Made by `reproduce/recordings.py`."]
 
 
 def kinds(recordings):
