@@ -71,7 +71,7 @@ def main():
         between_marks(ROOT / page, name, "\n".join(lines))
     multiverse()
     open_settings()
-    for script in ["reproduce/claims.py", "reproduce/numbers.py", "article/values.py"]:
+    for script in ["reproduce/claims.py", "reproduce/constants.py", "article/values.py"]:
         if status := subprocess.run([sys.executable, ROOT / script]).returncode:
             sys.exit(status)
 

@@ -109,7 +109,7 @@ fn the_page_of_settings_has_every_setting_that_is_ours_with_its_value() {
 
 #[test]
 fn the_page_of_numbers_has_the_constants_of_the_code() {
-    let Some(mut script) = python(&repository("reproduce/numbers.py")) else { return };
+    let Some(mut script) = python(&repository("reproduce/constants.py")) else { return };
     let said = Said::by(script.arg("--check"));
     assert_eq!(said.status, Some(0), "{said:?}");
 }

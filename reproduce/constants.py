@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""List the numbers in the code that decide what `estimate` finds: reproduce/numbers.py [--check]
+"""List the numbers in the code that decide what `estimate` finds: reproduce/constants.py [--check]
 
 Reads the constants of its stages, with what is said of each there, and writes docs/shown/numbers/README.md. With --check, it compares
 them with that page instead. Needs Python 3.11, and no packages. Status: 0; 1 if the page is another one.
@@ -28,7 +28,7 @@ def main():
         PAGE.parent.mkdir(parents=True, exist_ok=True)
         PAGE.write_text(text)
     elif not PAGE.exists() or PAGE.read_text() != text:
-        print("numbers: docs/shown/numbers/README.md is not of these constants; run reproduce/numbers.py", file=sys.stderr)
+        print("constants: docs/shown/numbers/README.md is not of these constants; run reproduce/constants.py", file=sys.stderr)
         return 1
     return 0
 
@@ -40,7 +40,7 @@ def page():
         "# The numbers of `estimate`",
         "",
         f"The code of `bodyschema estimate` has {count} numbers that decide, or bound, what it finds. None of them is a setting. Made by",
-        "`reproduce/numbers.py` from the code, where the reason for each stands; how each step uses them is in [estimate.md](../../estimate.md).",
+        "`reproduce/constants.py` from the code, where the reason for each stands; how each step uses them is in [estimate.md](../../estimate.md).",
         "They were chosen on calibration data ([seeds.toml](../../../reproduce/seeds.toml)). How results change with each was not studied.",
         "Names of one meaning for several steps, such as RIDGE, are one number each.",
     ]
