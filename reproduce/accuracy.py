@@ -32,7 +32,7 @@ def summary():
         ("[15 bodies](shown/bodies/README.md), random movement", "100,000", of(bodies, 100_000, 0.0), of_study),
         ("the same, noise of 10 % of the root mean square", "100,000", of(bodies, 100_000, 0.1), of_study),
         ("the same bodies swim in [gaits that change](estimate.md#rhythmic-movement)", "10,000", changing, of_gaits),
-        ("[movements of people](#recorded-movements), recorded by others", f"{min(counts)} to {max(counts)}", recordings, revisions(recordings)),
+        ("[movements](#recorded-movements) recorded by others", f"{min(counts)} to {max(counts):,}", recordings, revisions(recordings)),
         ("[robots of boxes](shown/boxes/README.md), random movement", "20,000", boxes, revisions(boxes)),
         ("[robots as published](shown/robots/README.md), random movement", "100,000", robots, revisions(robots)),
     ]
@@ -222,7 +222,7 @@ def recorded(moved, further):
     """What came out of recorded movements, by use, collection and length."""
     groups = [
         ("held out, one collection of acted movements", [row for row in of_use("held out", moved) if row["recording"] not in further]),
-        ("held out, twelve further collections", [row for row in of_use("held out", moved) if row["recording"] in further]),
+        ("held out, further collections", [row for row in of_use("held out", moved) if row["recording"] in further]),
         ("calibration", of_use("calibration", moved)),
     ]
     lines = ["| recordings | samples | mean adjusted Rand index | parts right | tree right | revision |", "|---|---|---|---|---|---|"]

@@ -130,10 +130,11 @@ class Moved:
             finger = start + np.linspace(0, 1, len(touch[first : first + STROKE]))[:, None] * (end - start)
             far = ((finger[:, None] - self.place[on]) ** 2).sum(2)
             touch[first : first + STROKE, on] = np.exp(-far / (2 * REACH**2))
+        self.strokes = touch
         return touch
 
     def pads(self):
-        return self.stroked() > 0.5
+        return self.strokes > 0.5
 
     def soft(self):
         """The speed along the normal is that of the part, and one of its own, smooth over a second."""

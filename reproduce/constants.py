@@ -39,7 +39,8 @@ def page():
     lines = [
         "# The numbers of `estimate`",
         "",
-        f"The code of `bodyschema estimate` has {count} numbers that decide, or bound, what it finds. None of them is a setting. Made by",
+        f"The code of `bodyschema estimate` has {count} numbers. Most decide, or bound, what it finds; a few only bound its time and memory. None is a",
+        "setting. Made by",
         "`reproduce/constants.py` from the code, where the reason for each stands; how each step uses them is in [estimate.md](../../estimate.md).",
         "They were chosen on calibration data ([seeds.toml](../../../reproduce/seeds.toml)). How results change with each was not studied.",
         "Names of one meaning for several steps, such as RIDGE, are one number each.",
@@ -58,9 +59,13 @@ def numbers(stage):
     for file in files:
         if not file.exists() or file.stem in ("tests", "fixtures", "testing") or "tests" in file.parts:
             continue
-        last = ""
-        for comment, name, kind, value in CONSTANT.findall(file.read_text()):
-            last = " ".join(line.strip().removeprefix("///").strip() for line in comment.splitlines()) or last
+        last, end = "", 0
+        for found in CONSTANT.finditer(file.read_text()):
+            comment, name, kind, value = found.groups()
+            said = " ".join(line.strip().removeprefix("///").strip() for line in comment.splitlines())
+            # Two together have one comment.
+            last = said or (last if found.start() == end + 1 else "")
+            end = found.end()
             if "&str" not in kind:
                 rows.append((file.relative_to(ROOT), name, value, last.replace("|", "\\|")))
     return rows

@@ -174,7 +174,9 @@ def mass_of_urdf(file):
 
     for joint in robot.findall("joint"):
         if joint.get("type") == "fixed":
-            together[first(joint.find("child").get("link"))] = first(joint.find("parent").get("link"))
+            child, parent = (first(joint.find(end).get("link")) for end in ("child", "parent"))
+            if child != parent:
+                together[child] = parent
     masses, shaped = {}, set()
     for link in robot.findall("link"):
         mass, name = link.find("inertial/mass"), first(link.get("name"))

@@ -475,6 +475,7 @@ def page(parts, shares, same, choices, around, questions, pairs, errors):
         "",
         "What two settings do only together comes on top: the second-order terms of Sobol's decomposition. These pairs have the largest shares of the",
         "variance, as the mean over the answers. All pairs, and each answer: [pairs.csv](pairs.csv).",
+        *without_pairs(pairs, answers_in(questions)),
         "",
         *table(["settings", "share"], [[f"{row['factor']}, with {row['other']}", with_ends(row, "all", 1)] for row in pairs[:PAIRS]]),
         "",
@@ -560,6 +561,12 @@ def by_choice(rows, name=lambda row: f"{row['factor']}: {row['option']}"):
         found.setdefault(name(row), {})[row["claim"]] = row
     return [[key, f"{own[HEADLINE]['n']:,}", *(f"{one['judged']}, {with_ends(one)}" if one["judged"] else "0" for one in own.values())]
             for key, own in found.items()]
+
+
+def without_pairs(pairs, answers):
+    """Which answers have surrogates without pairs, in a sentence."""
+    names = [name for name in answers if not any(float(row[name]) for row in pairs)]
+    return [f"Cross-validation chose a surrogate without pairs for {' and '.join(names)}, so their shares are 0."] if names else []
 
 
 def lost(around):

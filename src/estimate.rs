@@ -132,10 +132,9 @@ impl Fit {
         let cause = match verdict {
             Verdict::Good => None,
             _ if has_offset => Some(OFFSET),
-            _ if is_stroked => Some(STROKES),
             _ if repeats_itself => Some(REPETITION),
-            _ if explained >= GOOD && comes_back => Some(SIMILARITY),
-            _ => Some(cause(&recording.tactile, is_noisy)),
+            _ if explained >= GOOD && comes_back && !is_stroked => Some(SIMILARITY),
+            _ => Some(cause(&recording.tactile, is_noisy, is_stroked)),
         };
         Self { verdict, explained, novelty, cause }
     }
@@ -222,7 +221,7 @@ const REPETITION: &str = "the movement repeats itself, so that parts that keep s
 const SIMILARITY: &str = "the movement comes back to similar states, as in a rhythm, and parts that keep step are hard to tell apart";
 
 /// What is likely to be the matter if rigid parts do not explain a recording.
-fn cause(tactile: &Tactile, is_noisy: bool) -> &'static str {
+fn cause(tactile: &Tactile, is_noisy: bool, is_stroked: bool) -> &'static str {
     let has_levels = |series: &[f32]| {
         let mut values: Vec<u32> = Vec::new();
         series.iter().filter(|pressure| !pressure.is_nan()).all(|pressure| {
@@ -236,6 +235,8 @@ fn cause(tactile: &Tactile, is_noisy: bool) -> &'static str {
     let with_levels = tactile.series().filter(|series| has_levels(series)).count();
     if 2 * with_levels > tactile.sensors() {
         "most sensors have a few levels only, such as contact pads, which do not feel speeds"
+    } else if is_stroked {
+        STROKES
     } else if tactile.samples < SHORT {
         "the recording is short"
     } else if is_noisy {

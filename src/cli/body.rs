@@ -87,6 +87,12 @@ impl Import {
             );
         }
         let Imported { file, notes, surfaces } = import_into(&robot, &out, &options)?;
+        // Now that the body is there, whatever its name.
+        ensure!(
+            view.as_ref().is_none_or(|view| !is_same_file(&out, view)),
+            "{}: is the body; write the page (--view) to another file",
+            out.display()
+        );
         say(format!("{} parts, in {}", file.parts.len(), out.display()))?;
         say(format!("joints: {}", joints(&file)))?;
         if let Some(view) = &view {

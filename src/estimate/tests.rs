@@ -4,19 +4,23 @@ use std::collections::BTreeMap;
 
 use super::*;
 
+/// The verdict on a recording of 12 sensors on one part that explains all.
+fn explained(recording: &Recording, novelty: f64) -> Fit {
+    let parts = RigidParts {
+        labels: vec![0; 12],
+        residuals: vec![0.0; 12],
+        alternatives: vec![Vec::new(); 12],
+        unassigned: Vec::new(),
+        motions: BTreeMap::new(),
+    };
+    Fit::new(&parts, recording, novelty, novelty < SIMILAR)
+}
+
 #[test]
 fn whatever_is_explained_a_short_recording_is_doubtful_and_one_that_repeats_or_has_an_offset_does_not_fit() {
     let with_rest = |rest: f32, samples: usize, novelty: f64| {
         let pressures = (0..12 * samples).map(|at| rest + (at % 7) as f32).collect();
-        let recording = Recording::new(Tactile { samples, pressures });
-        let parts = RigidParts {
-            labels: vec![0; 12],
-            residuals: vec![0.0; 12],
-            alternatives: vec![Vec::new(); 12],
-            unassigned: Vec::new(),
-            motions: BTreeMap::new(),
-        };
-        Fit::new(&parts, &recording, novelty, novelty < SIMILAR)
+        explained(&Recording::new(Tactile { samples, pressures }), novelty)
     };
     let fit = |samples: usize, novelty: f64| with_rest(0.0, samples, novelty);
     assert_eq!(fit(SHORT, 0.1).verdict, Verdict::Good);
@@ -31,6 +35,28 @@ fn whatever_is_explained_a_short_recording_is_doubtful_and_one_that_repeats_or_h
         let offset = with_rest(0.01, SHORT, novelty);
         assert_eq!((offset.verdict, offset.cause), (Verdict::DoesNotFit, Some(OFFSET)));
     }
+}
+
+#[test]
+fn where_few_sensors_feel_something_at_a_time_it_does_not_fit_unless_noise_tells_no_more() {
+    // One sensor after the other, or every other one.
+    let felt = |apart: usize, levels: usize| {
+        let pressure = |at: usize| {
+            let (sensor, t) = (at / SHORT, at % SHORT);
+            if (t + sensor).is_multiple_of(apart) { 1.0 + (t % levels) as f32 } else { 0.0 }
+        };
+        Recording::new(Tactile { samples: SHORT, pressures: (0..12 * SHORT).map(pressure).collect() })
+    };
+    let verdict =
+        |recording: &Recording| (explained(recording, 0.5).verdict, explained(recording, 0.5).cause);
+    assert_eq!(verdict(&felt(2, 97)), (Verdict::Good, None));
+    assert_eq!(verdict(&felt(12, 97)), (Verdict::DoesNotFit, Some(STROKES)));
+    let pads = verdict(&felt(12, 1));
+    assert!(
+        pads.0 == Verdict::DoesNotFit && pads.1.unwrap().starts_with("most sensors have a few levels only"),
+        "{pads:?}"
+    );
+    assert_eq!(verdict(&Recording { noisy: 12, ..felt(12, 97) }), (Verdict::Good, None));
 }
 
 #[test]

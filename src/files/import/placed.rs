@@ -87,8 +87,8 @@ pub(super) struct Link {
     pub bare_mass: f64,
     /// All of its mass, as the description names it.
     pub named: Option<Mass>,
-    /// Whether it names no mass in a description where that is none (URDF). Its shapes then weigh as water, but only where nothing
-    /// that is fixed to it names a mass.
+    /// Whether it names no mass in a description where that is none (URDF). Its shapes weigh as water all the same where nothing that is
+    /// fixed to it names a mass.
     pub is_unweighed: bool,
 }
 

@@ -141,9 +141,21 @@ fn stand_ins(word: &str, links: &mut [Link], strict: bool, notes: &mut Vec<Strin
     Ok(())
 }
 
+/// Lets links that name no mass weigh as water where nothing that is fixed to them names one.
+fn weigh_as_water(links: &mut [Link]) {
+    let rigids: Vec<Vec<usize>> = Tree::new(links).rigids.iter().map(|rigid| rigid.links.clone()).collect();
+    for members in rigids {
+        let names_mass = |link: &Link| link.bare_mass > 0.0 || !link.is_unweighed && !link.solids.is_empty();
+        if !members.iter().any(|&at| names_mass(&links[at])) {
+            members.iter().for_each(|&at| links[at].is_unweighed = false);
+        }
+    }
+}
+
 /// Gives the mass of what has no shape to the rigid body that it is part of, or else to the one that carries it. Where masses cannot
 /// stay where they are named, all that is fixed together is equally dense.
 fn weigh_bare(word: &str, links: &mut [Link], strict: bool, notes: &mut Vec<String>) -> Result<(), Wrong> {
+    weigh_as_water(links);
     let tree = Tree::new(links);
     let first_shaped = tree.rigids.iter().position(|rigid| rigid.lead.is_some());
     let mut added = vec![0.0; tree.rigids.len()];
@@ -186,12 +198,11 @@ fn weigh_bare(word: &str, links: &mut [Link], strict: bool, notes: &mut Vec<Stri
         }
         // A ball that stands for what has no shape weighs what that weighs.
         let real = |solid: &&Solid| !solid.is_bare;
-        let (unweighed, weighed): (Vec<usize>, Vec<usize>) =
-            members.iter().partition(|&&at| links[at].is_unweighed);
-        let all: f64 =
-            weighed.iter().flat_map(|&at| &links[at].solids).filter(real).map(Solid::own_mass).sum::<f64>()
-                + added;
-        let is_part_unweighed = all > 0.0 && unweighed.iter().any(|&at| !links[at].solids.is_empty());
+        let weighed = members.iter().filter(|&&at| !links[at].is_unweighed);
+        let own: f64 = weighed.flat_map(|&at| &links[at].solids).filter(real).map(Solid::own_mass).sum();
+        let all = own + added;
+        let is_part_unweighed =
+            members.iter().any(|&at| links[at].is_unweighed && !links[at].solids.is_empty());
         if too_dense || is_part_unweighed {
             let bulk: f64 = solids().map(Solid::bulk).sum();
             for &at in members {
@@ -202,9 +213,6 @@ fn weigh_bare(word: &str, links: &mut [Link], strict: bool, notes: &mut Vec<Stri
         if added == 0.0 {
             continue;
         }
-        let own: f64 =
-            members.iter().flat_map(|&at| &links[at].solids).filter(real).map(Solid::own_mass).sum();
-        let all = own + added;
         let shapes: Vec<(usize, f64)> = members
             .iter()
             .filter(|&&at| !links[at].solids.is_empty())

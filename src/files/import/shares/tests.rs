@@ -82,6 +82,8 @@ fn a_urdf_link_without_a_mass_has_none_where_what_is_fixed_to_it_has_one() {
         (link("a", "5", shape), link("b", "", &small), "fixed", 5.0),
         (link("a", "5", shape), link("b", "", &small), "continuous", 5.0 + 3.0),
         (link("a", "", shape), link("b", "", &small), "fixed", 30.0 + 3.0),
+        // What turns on it says nothing of its own mass.
+        (link("a", "", shape), link("b", "1", bare), "continuous", 30.0 + 1.0),
     ] {
         let text = robot(&first, &second, kind);
         assert!(

@@ -134,8 +134,8 @@ impl RecordedMovement {
 
     /// Where a joint is on what carries it: its offset or, if it is always elsewhere, where its position channels say, at the first frame or
     /// on average. `None` of the first joint, and of one that travels: by more than a twentieth of that distance, and by more than a
-    /// quarter of it on average. The only one with position channels on the first joint, which may
-    /// be a mark on the floor, travels if it moves at all.
+    /// quarter of it on average. On a first joint that never moves or carries one such joint only, as
+    /// a mark on the floor does, a joint travels if it moves at all.
     pub fn bone(&self, joint: usize) -> Option<Column<f64>> {
         let RecordedJoint { parent, offset, .. } = &self.joints[joint];
         let offset = Column::from(*offset);
@@ -147,7 +147,8 @@ impl RecordedMovement {
         let place = |frame: usize| self.local(joint, frame).translation.vector;
         let places = || (0..self.frames()).map(place);
         let on_first = self.joints.iter().filter(|joint| joint.parent == Some(0) && joint.is_placed());
-        let is_on_mark = *parent == Some(0) && on_first.count() == 1;
+        let rests = || (0..self.frames()).all(|frame| self.local(0, frame) == self.local(0, 0));
+        let is_on_mark = *parent == Some(0) && (on_first.count() == 1 || rests());
         let steady = [offset, place(0)].into_iter().find(|rest| {
             let stretch = if is_on_mark { 0.0 } else { STRETCH * rest.norm() };
             places().all(|place| (place - rest).norm() <= stretch + ROUNDING * longest)

@@ -77,4 +77,12 @@ fn a_joint_that_travels_has_no_bone_to_it() {
     // On a mark on the floor, a body may do little more than breathe.
     assert_eq!(bone(0, [2.0, 1.0, 0.0], &[2.0001, 2.0]), Some(Column::new(2.0, 1.0, 0.0)));
     assert_eq!(bone(0, [2.0, 1.0, 0.0], &[2.01, 2.0]), None);
+    // So do two bodies on a mark that stays; not two legs on hips that move.
+    let two = |turned: f64| {
+        let place =
+            |name: &str, x: f64| joint(name, (name != "a").then_some(0), [x, 0.0, 0.0], &[Position(0)]);
+        let joints = vec![joint("a", None, [0.0; 3], &[Rotation(0)]), place("b", 3.0), place("c", -3.0)];
+        RecordedMovement::new(joints, 0.1, vec![0.0, 3.0, -3.0, turned, 3.5, -3.5]).bone(1)
+    };
+    assert_eq!((two(0.0), two(1.0)), (None, Some(Column::new(3.25, 0.0, 0.0))));
 }
