@@ -71,7 +71,7 @@ mod tests {
             joint(Some(1), 100.0, place, &[30.0]),
         ];
         let movement =
-            RecordedMovement::new(joints, 1.0, vec![0.0, 0.0, 0.0, 0.0, 100.0, 9.0, 0.0, 0.0, 0.0, 150.0]);
+            RecordedMovement::new(joints, 1.0, vec![0.0, 0.0, 0.0, 0.0, 100.0, 9.0, 0.0, 0.0, 0.0, 300.0]);
         // From the end of 4 over the root to that of 1.
         assert_eq!(longest_way(&movement), 30.0_f64.max(4.0 + 3.0 + 2.0 + 8.0 + 1.0));
     }
