@@ -28,13 +28,20 @@ def test_robots_have_two_joints_and_scenes_do_not_count_twice(tmp_path):
     assert found("urdf") == {"arm.urdf": 2}
 
 
-def test_masses_are_compared_where_every_link_with_a_shape_names_one(tmp_path):
+def test_masses_are_compared_where_all_that_is_fixed_together_names_one(tmp_path):
     file = tmp_path / "arm.urdf"
     weight = '<inertial><mass value="2"/></inertial>'
-    file.write_text(f"<robot><link>{weight}<visual/></link><link>{weight}</link><link/></robot>")
+    link = lambda name, inside="": f'<link name="{name}">{inside}</link>'
+    fixed = '<joint type="fixed"><parent link="a"/><child link="b"/></joint>'
+    file.write_text(f"<robot>{link('a', weight + '<visual/>')}{link('b', weight)}{link('c')}</robot>")
     assert imports.mass_of_urdf(file) == 4
-    file.write_text(f"<robot><link>{weight}<visual/></link><link><visual/></link></robot>")
+    shaped = link("a", weight + "<visual/>") + link("b", "<visual/>")
+    file.write_text(f"<robot>{shaped}</robot>")
     assert imports.mass_of_urdf(file) is None
+    # A loop of fixed joints ends, too.
+    for joints in (fixed, fixed + fixed.replace('"a"', '"x"').replace('"b"', '"a"').replace('"x"', '"b"')):
+        file.write_text(f"<robot>{shaped}{joints}</robot>")
+        assert imports.mass_of_urdf(file) == 2
 
 
 def test_volumes_of_parts():
