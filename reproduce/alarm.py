@@ -9,6 +9,7 @@ and NumPy. Takes about a quarter of an hour on two cores. Status: 0, or 2 on an 
 """
 
 import argparse
+import functools
 import json
 import pathlib
 import sys
@@ -121,7 +122,8 @@ class Moved:
         late = self.random.integers(0, LATEST + 1, self.touch.shape[1])
         return np.stack([np.roll(series, delay) for series, delay in zip(self.touch.T, late)], axis=1)[LATEST:]
 
-    def stroked(self):
+    @functools.cached_property
+    def strokes(self):
         """A finger moves evenly from one sensor of a part to another, while the body lies still."""
         touch = np.zeros_like(self.touch)
         for first in range(0, len(touch), STROKE):
@@ -130,8 +132,10 @@ class Moved:
             finger = start + np.linspace(0, 1, len(touch[first : first + STROKE]))[:, None] * (end - start)
             far = ((finger[:, None] - self.place[on]) ** 2).sum(2)
             touch[first : first + STROKE, on] = np.exp(-far / (2 * REACH**2))
-        self.strokes = touch
         return touch
+
+    def stroked(self):
+        return self.strokes
 
     def pads(self):
         return self.strokes > 0.5

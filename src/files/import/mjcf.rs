@@ -209,16 +209,7 @@ impl<'a> Bodies<'a> {
                     self.frame(Element::new(format!("body `{name}`"), node), node, around)?;
                 let origin = placed.translation.vector;
                 let (turns, solids) = (Vec::new(), Vec::new());
-                self.links.push(Link {
-                    name,
-                    parent,
-                    origin,
-                    turns,
-                    solids,
-                    bare_mass: 0.0,
-                    named: None,
-                    is_unweighed: false,
-                });
+                self.links.push(Link { name, parent, origin, turns, solids, ..Link::default() });
                 self.geoms.push(Vec::new());
                 self.inertials.push(None);
                 Ok(Some(Frame { body: Some(self.links.len() - 1), ..frame }))

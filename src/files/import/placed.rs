@@ -71,7 +71,7 @@ impl Turn {
 }
 
 /// A body of MJCF or a link of URDF.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Link {
     /// Its name.
     pub name: String,

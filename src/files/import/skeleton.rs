@@ -250,16 +250,7 @@ impl<'a> Skeleton<'a> {
     fn link(&self, joint: usize, parent: Option<usize>, turns: Vec<Turn>) -> Link {
         let origin = self.places[joint];
         let solids = self.bones[joint].iter().map(|bone| capsule(origin, *bone)).collect();
-        Link {
-            name: self.name(joint).to_owned(),
-            parent,
-            origin,
-            turns,
-            solids,
-            bare_mass: 0.0,
-            named: None,
-            is_unweighed: false,
-        }
+        Link { name: self.name(joint).to_owned(), parent, origin, turns, solids, ..Link::default() }
     }
 
     /// Notes what is not as in the file.

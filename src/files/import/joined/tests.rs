@@ -15,16 +15,7 @@ fn link(name: &str, parent: Option<usize>, turns: &[Turn], solids: usize) -> Lin
     let solid =
         |at: usize| Solid::new(Shape::Sphere { radius: 0.1 }, Isometry3::translation(0.0, 0.0, at as f64));
     let solids = (0..solids).map(solid).collect();
-    Link {
-        name: name.to_owned(),
-        parent,
-        origin,
-        turns: turns.to_vec(),
-        solids,
-        bare_mass: 0.0,
-        named: None,
-        is_unweighed: false,
-    }
+    Link { name: name.to_owned(), parent, origin, turns: turns.to_vec(), solids, ..Link::default() }
 }
 
 fn hinge(axis: Vector3) -> Turn {
