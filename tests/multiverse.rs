@@ -3,10 +3,8 @@
 
 use std::collections::BTreeMap;
 use std::fs;
-use std::path::Path;
-use std::process::{Command, Output};
 
-use crate::support::folder::{files, rows};
+use crate::support::folder::Folder;
 
 /// Bodies of few sensors, for seconds. One of the two controllers is unstable.
 const DESIGN: &str = r#"
@@ -81,26 +79,15 @@ why = "usual"
 settings = { schema = { start = "k-means" } }
 "#;
 
-fn bodyschema(folder: &Path, arguments: &str) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_bodyschema"));
-    command.current_dir(folder).args(arguments.split(' ')).output().unwrap()
-}
-
-fn succeed(folder: &Path, arguments: &str) {
-    let output = bodyschema(folder, arguments);
-    assert_eq!(output.status.code(), Some(0), "{output:?}");
-}
-
 #[test]
 fn shards_give_the_bytes_of_one_run_and_a_failure_is_a_result() {
-    let folder = tempfile::tempdir().unwrap();
-    let at = |name: &str| folder.path().join(name);
-    fs::write(at("design.toml"), DESIGN).unwrap();
-    succeed(folder.path(), "study design.toml --jobs 1 --out whole");
-    let whole = files(&at("whole"));
-    assert!(!at("whole/checkpoints").exists());
+    let folder = Folder::new();
+    folder.write("design.toml", DESIGN);
+    folder.done("study design.toml --jobs 1 --out whole");
+    let whole = folder.files("whole");
+    assert!(!folder.at("whole/checkpoints").exists());
 
-    let configurations = rows(&at("whole/configurations.csv"));
+    let configurations = folder.rows("whole/configurations.csv");
     assert!(configurations.len() > 8 && configurations.len() <= 16, "{}", configurations.len());
     for row in &configurations {
         // What is unstable has a reason, and no value.
@@ -110,10 +97,10 @@ fn shards_give_the_bytes_of_one_run_and_a_failure_is_a_result() {
     // An even draw has both options of every factor, and of the first as often as can be.
     let wild = configurations.iter().filter(|row| row["gains"] == "wild").count();
     assert!((4..=configurations.len() - 4).contains(&wild), "{wild}");
-    let claims = rows(&at("whole/study.csv"));
+    let claims = folder.rows("whole/study.csv");
     assert_eq!(claims.len(), 2 * configurations.len());
     assert_eq!(claims.iter().filter(|row| row["value"].is_empty()).count(), 2 * wild);
-    let shares = rows(&at("whole/shares.csv"));
+    let shares = folder.rows("whole/shares.csv");
     let all = shares.iter().find(|row| row["group"] == "all" && row["claim"] == "number-of-parts").unwrap();
     assert_eq!(all["n"].parse::<usize>().unwrap(), configurations.len());
     assert_eq!(all["with_value"].parse::<usize>().unwrap(), configurations.len() - wild);
@@ -124,51 +111,47 @@ fn shards_give_the_bytes_of_one_run_and_a_failure_is_a_result() {
 
     // Shards, one of them stopped and run again, in any order and with any number of threads.
     let shard = |shard: &str, jobs: usize| {
-        succeed(folder.path(), &format!("study design.toml --shard {shard} --jobs {jobs} --out shards"));
+        folder.done(&format!("study design.toml --shard {shard} --jobs {jobs} --out shards"));
     };
     shard("3/3", 2);
-    let movements = at("shards/checkpoints/movements");
+    let movements = folder.at("shards/checkpoints/movements");
     let finished = fs::read_dir(&movements).unwrap().map(|entry| entry.unwrap().path());
     fs::remove_file(finished.min().unwrap()).unwrap();
     // What a killed process may leave.
-    fs::create_dir_all(at("shards/checkpoints/of-a-killed-shard")).unwrap();
+    fs::create_dir_all(folder.at("shards/checkpoints/of-a-killed-shard")).unwrap();
     fs::write(movements.join("half.json.bodyschema.partial"), "{").unwrap();
     // What a comment says is no part of a design.
-    fs::write(at("design.toml"), format!("# Four movements.\n{DESIGN}")).unwrap();
+    folder.write("design.toml", format!("# Four movements.\n{DESIGN}"));
     shard("1/3", 1);
-    let early = bodyschema(folder.path(), "study design.toml --gather --out shards");
-    let message = String::from_utf8(early.stderr).unwrap();
-    assert!(early.status.code() == Some(2) && message.contains("lacks"), "{message}");
-    assert_eq!(message.lines().count(), 1, "{message}");
+    folder.refuse("study design.toml --gather --out shards", "lacks");
     for part in ["2/3", "3/3"] {
         shard(part, 3);
     }
-    succeed(folder.path(), "study design.toml --gather --out shards");
-    assert_eq!(files(&at("shards")), whole);
-    assert!(!at("shards/checkpoints").exists());
+    folder.done("study design.toml --gather --out shards");
+    assert_eq!(folder.files("shards"), whole);
+    assert!(!folder.at("shards/checkpoints").exists());
 
     // Its page can be made again from the folder alone.
-    fs::remove_file(at("shards/study.md")).unwrap();
-    succeed(folder.path(), "plot shards");
-    assert_eq!(files(&at("shards")), whole);
+    fs::remove_file(folder.at("shards/study.md")).unwrap();
+    folder.done("plot shards");
+    assert_eq!(folder.files("shards"), whole);
 
     // Any one can be run again by its number, and by its settings.
-    succeed(folder.path(), "study design.toml --only 2 --out two");
+    folder.done("study design.toml --only 2 --out two");
     let second = |all: Vec<BTreeMap<String, String>>| {
         all.into_iter().filter(|row| row["configuration"] == "2").collect::<Vec<_>>()
     };
-    assert_eq!(rows(&at("two/study.csv")), second(claims));
-    assert_eq!(rows(&at("two/configurations.csv")), second(configurations));
-    succeed(folder.path(), "simulate --settings two/settings.toml --out body");
-    succeed(folder.path(), "verify whole");
+    assert_eq!(folder.rows("two/study.csv"), second(claims));
+    assert_eq!(folder.rows("two/configurations.csv"), second(configurations));
+    folder.done("simulate --settings two/settings.toml --out body");
+    folder.done("verify whole");
 }
 
 /// Two meanings of an eligible sample judge the same samples, a reading overrides what it brings itself, and what is finished can be
 /// joined.
 #[test]
 fn an_evaluation_takes_no_new_samples_and_ranges_are_joined() {
-    let folder = tempfile::tempdir().unwrap();
-    let at = |name: &str| folder.path().join(name);
+    let folder = Folder::new();
     let more = r#"
 [[factor]]
 name = "reading"
@@ -204,10 +187,10 @@ settings = { evaluate = { eligible_ari = 0.2 } }
         )
         // As many components as parts, so that the number of parts is often right.
         .replace("chains = 3, sweeps = 30", "chains = 8, sweeps = 60, components = 5");
-    fs::write(at("design.toml"), design).unwrap();
-    succeed(folder.path(), "study design.toml --out whole");
-    let configurations = rows(&at("whole/configurations.csv"));
-    let claims = rows(&at("whole/study.csv"));
+    folder.write("design.toml", design);
+    folder.done("study design.toml --out whole");
+    let configurations = folder.rows("whole/configurations.csv");
+    let claims = folder.rows("whole/study.csv");
     let n = |configuration: &str, claim: &str| -> usize {
         let row = claims.iter().find(|row| row["configuration"] == configuration && row["claim"] == claim);
         row.unwrap()["n"].parse().unwrap()
@@ -228,116 +211,85 @@ settings = { evaluate = { eligible_ari = 0.2 } }
     let half = configurations.iter().filter(|row| row["movement"] == "1").count();
     let ranges = ["movements-2-2", "movements-1-1"];
     for range in ranges {
-        succeed(folder.path(), &format!("study design.toml --only {range} --out parts/{range}"));
+        folder.done(&format!("study design.toml --only {range} --out parts/{range}"));
     }
-    succeed(folder.path(), "study design.toml --join parts --out joined");
-    let (whole, joined) = (files(&at("whole")), files(&at("joined")));
+    folder.done("study design.toml --join parts --out joined");
+    let (whole, joined) = (folder.files("whole"), folder.files("joined"));
     assert_eq!(joined, whole);
     // What is there is joined, and says how much it is; twice the same is refused.
-    fs::remove_dir_all(at(&format!("parts/{}", ranges[0]))).unwrap();
-    succeed(folder.path(), "study design.toml --join parts --out some");
-    assert_eq!(rows(&at("some/configurations.csv")).len(), half);
-    let page = fs::read_to_string(at("some/study.md")).unwrap();
+    fs::remove_dir_all(folder.at(format!("parts/{}", ranges[0]))).unwrap();
+    folder.done("study design.toml --join parts --out some");
+    assert_eq!(folder.rows("some/configurations.csv").len(), half);
+    let page = folder.text("some/study.md");
     assert!(page.contains(&format!("{half} of the {} of the design", configurations.len())), "{page}");
-    succeed(folder.path(), "study design.toml --only 1 --out parts/again");
-    let twice = bodyschema(folder.path(), "study design.toml --join parts --out twice");
-    let message = String::from_utf8(twice.stderr).unwrap();
-    assert!(twice.status.code() == Some(2) && message.contains("two of one configuration"), "{message}");
+    folder.done("study design.toml --only 1 --out parts/again");
+    folder.refuse("study design.toml --join parts --out twice", "two of one configuration");
 }
 
 #[test]
 fn another_seed_gives_other_movements_and_is_kept_with_the_design() {
-    let folder = tempfile::tempdir().unwrap();
-    let at = |name: &str| folder.path().join(name);
-    fs::write(at("base.toml"), DESIGN).unwrap();
+    let folder = Folder::new();
+    folder.write("base.toml", DESIGN);
     let over = "extends = \"base.toml\"\n[draws]\nmovements = 1\ndistances = 1\n";
-    fs::write(at("small.toml"), over).unwrap();
-    succeed(folder.path(), "study small.toml --only 1 --out first");
-    succeed(folder.path(), "study small.toml --only 1 --seed 200 --out second");
-    assert_ne!(fs::read(at("first/study.csv")).unwrap(), fs::read(at("second/study.csv")).unwrap());
-    succeed(folder.path(), "study second/design.toml --only 1 --out third");
-    assert_eq!(fs::read(at("second/study.csv")).unwrap(), fs::read(at("third/study.csv")).unwrap());
+    folder.write("small.toml", over);
+    folder.done("study small.toml --only 1 --out first");
+    folder.done("study small.toml --only 1 --seed 200 --out second");
+    assert_ne!(folder.bytes("first/study.csv"), folder.bytes("second/study.csv"));
+    folder.done("study second/design.toml --only 1 --out third");
+    assert_eq!(folder.bytes("second/study.csv"), folder.bytes("third/study.csv"));
 }
 
 #[test]
 fn what_cannot_be_done_is_refused_in_one_line() {
-    let folder = tempfile::tempdir().unwrap();
-    let at = |name: &str| folder.path().join(name);
+    let folder = Folder::new();
     let refused = |design: &str, arguments: &str, expected: &str| {
-        fs::write(at("design.toml"), design).unwrap();
-        let output = bodyschema(folder.path(), &format!("study design.toml {arguments}"));
-        let message = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(output.status.code(), Some(2), "{message}");
-        assert!(message.contains(expected), "{message:?} lacks {expected:?}");
-        message
+        folder.write("design.toml", design);
+        folder.refuse(&format!("study design.toml {arguments}"), expected);
     };
-    let one_line = |message: String| assert_eq!(message.lines().count(), 1, "{message}");
     let empty = DESIGN.split("[[factor.option]]\nlabel = \"uniform\"").next().unwrap();
-    one_line(refused(&format!("{empty}option = []\n"), "--out out", "`start` without an option"));
-    one_line(refused(&DESIGN.replace("movements = 4", "movements = 0"), "--out out", "draws nothing"));
-    one_line(refused(&DESIGN.replace("number-of-parts", "beauty"), "--out out", "names `beauty`"));
-    one_line(refused(&DESIGN.replace("levels = 2 }", "levels = 1 }"), "--out out", "quantise.levels"));
-    one_line(refused(&DESIGN.replace("[\"levels\"]", "[\"fins\"]"), "--out out", "groups by `fins`"));
-    one_line(refused(
+    refused(&format!("{empty}option = []\n"), "--out out", "`start` without an option");
+    refused(&DESIGN.replace("movements = 4", "movements = 0"), "--out out", "draws nothing");
+    refused(&DESIGN.replace("number-of-parts", "beauty"), "--out out", "names `beauty`");
+    refused(&DESIGN.replace("levels = 2 }", "levels = 1 }"), "--out out", "quantise.levels");
+    refused(&DESIGN.replace("[\"levels\"]", "[\"fins\"]"), "--out out", "groups by `fins`");
+    refused(
         &DESIGN.replace("level = \"map\"", "level = \"mop\""),
         "--out out",
         "`movement`, `distances`, `map`",
-    ));
-    one_line(refused(&DESIGN.replace("level = \"map\"\n", ""), "--out out", "`scaled` without `level`"));
-    one_line(refused(
-        &DESIGN.replace("seed = 100", "seed = 100\nvary = \"grid\""),
-        "--out out",
-        "one of these",
-    ));
-    one_line(refused(
+    );
+    refused(&DESIGN.replace("level = \"map\"\n", ""), "--out out", "`scaled` without `level`");
+    refused(&DESIGN.replace("seed = 100", "seed = 100\nvary = \"grid\""), "--out out", "one of these");
+    refused(
         &DESIGN.replace("seed = 100", "seed = 100\nsections = [\"factors\"]"),
         "--out out",
         "one-at-a-time",
-    ));
-    one_line(refused(
-        &DESIGN.replace("seed = 100", "seed = 100\nsections = [\"beauty\"]"),
-        "--out out",
-        "`values`",
-    ));
-    one_line(refused(
-        DESIGN,
-        "--only 99 --out out",
-        "there is no configuration `99`; give a number from 1 to",
-    ));
-    one_line(refused(&DESIGN.replace("movements = 4", "movements = 70000"), "--out out", "more than 65536"));
-    one_line(refused(
-        &DESIGN.replace("name = \"start\"", "name = \"failed\""),
-        "--out out",
-        "two of `failed`",
-    ));
-    one_line(refused(&DESIGN.replace("label = \"four\"", "label = \"two\""), "--out out", "two of `two`"));
-    one_line(refused(&DESIGN.replace("simulations = 2", "simulations = 1"), "--out out", "one simulation"));
-    one_line(refused(&DESIGN.replace("maps = 2", "maps = 2\nkeep = 1.5"), "--out out", "`draws.keep` = 1.5"));
-    one_line(refused(&DESIGN.replace("why = \"few\"", "why = \"few\"\nweight = 0"), "--out out", "weight 0"));
+    );
+    refused(&DESIGN.replace("seed = 100", "seed = 100\nsections = [\"beauty\"]"), "--out out", "`values`");
+    refused(DESIGN, "--only 99 --out out", "there is no configuration `99`; give a number from 1 to");
+    refused(&DESIGN.replace("movements = 4", "movements = 70000"), "--out out", "more than 65536");
+    refused(&DESIGN.replace("name = \"start\"", "name = \"failed\""), "--out out", "two of `failed`");
+    refused(&DESIGN.replace("label = \"four\"", "label = \"two\""), "--out out", "two of `two`");
+    refused(&DESIGN.replace("simulations = 2", "simulations = 1"), "--out out", "one simulation");
+    refused(&DESIGN.replace("maps = 2", "maps = 2\nkeep = 1.5"), "--out out", "`draws.keep` = 1.5");
+    refused(&DESIGN.replace("why = \"few\"", "why = \"few\"\nweight = 0"), "--out out", "weight 0");
     let judged = DESIGN.replace("level = \"distances\"", "level = \"evaluation\"");
-    one_line(refused(&judged, "--out out", "`two` at the level evaluation"));
+    refused(&judged, "--out out", "`two` at the level evaluation");
     let left_out =
         DESIGN.replace("[draws]", "[[left_out]]\nwhat = [\"agent.beauty\"]\nwhy = \"no\"\n[draws]");
-    one_line(refused(&left_out, "--out out", "leaves out `agent.beauty`"));
+    refused(&left_out, "--out out", "leaves out `agent.beauty`");
     let twice = DESIGN
         .replace("spin_damping = 0.1 }", "spin_damping = 0.1 }\nsettings = { motion = { error = \"raw\" } }");
-    one_line(refused(&twice, "--out out", "gains are those of a torque"));
+    refused(&twice, "--out out", "gains are those of a torque");
     for shard in ["3/2", "0/2", "1/0", "x", "-1/2"] {
-        refused(DESIGN, &format!("--shard={shard} --out out"), "a shard is I/N");
+        let said = folder.run(&format!("study design.toml --shard={shard} --out out"));
+        assert!(said.status == Some(2) && said.err.contains("a shard is I/N"), "{said:?}");
     }
-    fs::create_dir(at("other")).unwrap();
-    fs::write(at("other/design.toml"), "seed = 1").unwrap();
-    one_line(refused(DESIGN, "--out other", "another design"));
-    one_line(refused(DESIGN, "--gather --out other", "another design"));
-    one_line(refused(DESIGN, "--gather --out empty", "design.toml"));
-    succeed(folder.path(), "study design.toml --only 1 --out damaged");
-    let claims = at("damaged/study.csv");
-    let cut = fs::read_to_string(&claims).unwrap().lines().take(2).collect::<Vec<_>>().join("\n");
-    fs::write(&claims, cut).unwrap();
-    let damaged = bodyschema(folder.path(), "plot damaged");
-    let message = String::from_utf8(damaged.stderr).unwrap();
-    assert!(
-        damaged.status.code() == Some(2) && message.contains("study.csv: is not of the design"),
-        "{message}"
-    );
+    folder.write("other/design.toml", "seed = 1");
+    refused(DESIGN, "--out other", "another design");
+    refused(DESIGN, "--gather --out other", "another design");
+    refused(DESIGN, "--gather --out empty", "design.toml");
+    folder.done("study design.toml --only 1 --out damaged");
+    let cut = folder.text("damaged/study.csv").lines().take(2).collect::<Vec<_>>().join("\n");
+    folder.write("damaged/study.csv", cut);
+    folder.refuse("plot damaged", "study.csv: is not of the design");
 }

@@ -2,10 +2,8 @@
 
 use std::collections::BTreeMap;
 use std::fs;
-use std::path::Path;
-use std::process::{Command, Output};
 
-use crate::support::folder::{files, rows};
+use crate::support::folder::Folder;
 
 /// Bodies of few sensors, for a second or two, and what else the designs below rest on.
 const SMALL: &str = "
@@ -109,27 +107,12 @@ settings = {{ motion = {{ controller = \"torque\", stiffness = 1e5, damping = 1e
     )
 }
 
-fn bodyschema(folder: &Path, arguments: &str) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_bodyschema"))
-        .current_dir(folder)
-        .args(arguments.split(' '))
-        .output()
-        .unwrap()
-}
-
-fn succeed(folder: &Path, arguments: &str) -> String {
-    let output = bodyschema(folder, arguments);
-    assert_eq!(output.status.code(), Some(0), "{output:?}");
-    String::from_utf8(output.stderr).unwrap()
-}
-
 #[test]
 fn a_study_of_one_factor_at_a_time_says_what_each_value_does_and_continues_where_it_was() {
-    let folder = tempfile::tempdir().unwrap();
-    let at = |name: &str| folder.path().join(name);
-    fs::write(at("design.toml"), one_at_a_time()).unwrap();
-    succeed(folder.path(), "study design.toml --jobs 1 --out one");
-    let one = files(&at("one"));
+    let folder = Folder::new();
+    folder.write("design.toml", one_at_a_time());
+    folder.done("study design.toml --jobs 1 --out one");
+    let one = folder.files("one");
     assert_eq!(
         one.keys().map(String::as_str).collect::<Vec<_>>(),
         [
@@ -143,10 +126,10 @@ fn a_study_of_one_factor_at_a_time_says_what_each_value_does_and_continues_where
             "study.md"
         ]
     );
-    let page = fs::read_to_string(at("one/study.md")).unwrap();
+    let page = folder.text("one/study.md");
     assert!(page.contains("| levels = 3 |") && page.contains("2 simulations failed: "), "{page}");
     assert!(!page.contains("NaN"));
-    let rows = rows(&at("one/measures.csv"));
+    let rows = folder.rows("one/measures.csv");
     // Of the default and three values: two mixtures at two d, and another p; five measures each.
     assert_eq!(rows.len(), 4 * 5 * 5);
     for row in &rows {
@@ -163,57 +146,49 @@ fn a_study_of_one_factor_at_a_time_says_what_each_value_does_and_continues_where
     }
 
     // A finished study is not run again, and not lost to a part of it.
-    let again = bodyschema(folder.path(), "study design.toml --out one");
-    assert!(String::from_utf8(again.stdout).unwrap().contains("already"));
-    let part = bodyschema(folder.path(), "study design.toml --only levels --out one");
-    let message = String::from_utf8(part.stderr).unwrap();
-    assert!(
-        part.status.code() == Some(2) && message.contains("holds the tables of 4 configurations"),
-        "{message}"
-    );
-    assert_eq!(files(&at("one")), one);
+    assert!(folder.run("study design.toml --out one").out.contains("already"));
+    folder.refuse("study design.toml --only levels --out one", "holds the tables of 4 configurations");
+    assert_eq!(folder.files("one"), one);
 
     // A factor is the same alone, and what is run after it continues from there.
-    succeed(folder.path(), "study design.toml --only levels --jobs 3 --out part");
-    let part = fs::read_to_string(at("part/study.md")).unwrap();
+    folder.done("study design.toml --only levels --jobs 3 --out part");
+    let part = folder.text("part/study.md");
     assert!(part.contains("| levels = 3 |") && !part.contains("Gains"), "{part}");
-    let told = succeed(folder.path(), "study design.toml --jobs 3 --out part");
+    let told = folder.done("study design.toml --jobs 3 --out part").err;
     assert!(told.contains("continuing"), "{told}");
-    assert_eq!(files(&at("part")), one);
+    assert_eq!(folder.files("part"), one);
 
-    fs::remove_file(at("one/study.md")).unwrap();
-    fs::remove_dir_all(at("one/figures")).unwrap();
-    succeed(folder.path(), "plot one");
-    assert_eq!(files(&at("one")), one);
+    fs::remove_file(folder.at("one/study.md")).unwrap();
+    fs::remove_dir_all(folder.at("one/figures")).unwrap();
+    folder.done("plot one");
+    assert_eq!(folder.files("one"), one);
 }
 
 #[test]
 fn a_ranking_has_the_settings_of_the_best_and_shows_which_claims_hold_together() {
-    let folder = tempfile::tempdir().unwrap();
-    let at = |name: &str| folder.path().join(name);
-    fs::write(at("design.toml"), ranked()).unwrap();
-    succeed(folder.path(), "study design.toml --jobs 2 --out one");
-    let ranking = rows(&at("one/ranking.csv"));
+    let folder = Folder::new();
+    folder.write("design.toml", ranked());
+    folder.done("study design.toml --jobs 2 --out one");
+    let ranking = folder.rows("one/ranking.csv");
     assert_eq!(ranking.len(), 4);
     // What is unstable is last, and has no score.
     let names: Vec<&str> = ranking.iter().map(|row| row["name"].as_str()).collect();
     assert!(names[2].starts_with("unstable") && names[3].starts_with("unstable"), "{names:?}");
     assert!(ranking[3]["score"] == "0.0" && ranking[0]["score"] != "0.0" && ranking[0]["claims"] == "2");
-    let page = fs::read_to_string(at("one/study.md")).unwrap();
+    let page = folder.text("one/study.md");
     assert!(page.contains("configurations that reproduce both claims") && !page.contains("NaN"), "{page}");
-    succeed(folder.path(), "verify one");
-    let best = fs::read_to_string(at("one/best.toml")).unwrap();
+    folder.done("verify one");
+    let best = folder.text("one/best.toml");
     assert!(best.contains("levels = 3"), "{best}");
-    succeed(folder.path(), "simulate --settings one/best.toml --out body");
+    folder.done("simulate --settings one/best.toml --out body");
 }
 
 #[test]
 fn a_study_of_named_configurations_says_how_far_each_claim_is_from_the_first_one_s() {
-    let folder = tempfile::tempdir().unwrap();
-    let at = |name: &str| folder.path().join(name);
-    fs::write(at("design.toml"), named()).unwrap();
-    succeed(folder.path(), "study design.toml --jobs 1 --out one");
-    let one = files(&at("one"));
+    let folder = Folder::new();
+    folder.write("design.toml", named());
+    folder.done("study design.toml --jobs 1 --out one");
+    let one = folder.files("one");
     let expected = [
         "configurations.csv",
         "design.toml",
@@ -223,7 +198,7 @@ fn a_study_of_named_configurations_says_how_far_each_claim_is_from_the_first_one
         "study.md",
     ];
     assert_eq!(one.keys().map(String::as_str).collect::<Vec<_>>(), expected);
-    let claims = rows(&at("one/study.csv"));
+    let claims = folder.rows("one/study.csv");
     assert_eq!(claims.len(), 4 * 2);
     let parts = |name: &str| {
         claims.iter().find(|row| row["name"] == name && row["claim"] == "number-of-parts").unwrap()
@@ -236,31 +211,26 @@ fn a_study_of_named_configurations_says_how_far_each_claim_is_from_the_first_one
     // Two simulations are too few for an interval of a change.
     assert!(parts("three")["change_low"].is_empty() && !parts("three")["low"].is_empty());
     assert!(parts("gentle")["change"].is_empty() && parts("unstable")["value"].is_empty());
-    let configurations = rows(&at("one/configurations.csv"));
+    let configurations = folder.rows("one/configurations.csv");
     assert!(configurations[0]["resolved"] == "true" && configurations[3]["failed"] == "4");
     let page = String::from_utf8(one["study.md"].clone()).unwrap();
     assert!(page.contains("4 movements failed: ") && !page.contains("NaN"), "{page}");
 
     // Shards of any design.
     for shard in ["2/2", "1/2"] {
-        succeed(folder.path(), &format!("study design.toml --shard {shard} --jobs 3 --out two"));
+        folder.done(&format!("study design.toml --shard {shard} --jobs 3 --out two"));
     }
-    succeed(folder.path(), "study design.toml --gather --out two");
-    assert_eq!(files(&at("two")), one);
-    succeed(folder.path(), "verify one");
+    folder.done("study design.toml --gather --out two");
+    assert_eq!(folder.files("two"), one);
+    folder.done("verify one");
 }
 
 #[test]
 fn what_is_no_design_is_refused_in_one_line() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = Folder::new();
     let refused = |arguments: &str, design: String, expected: &str| {
-        fs::write(folder.path().join("design.toml"), design).unwrap();
-        let output =
-            bodyschema(folder.path(), &format!("study design.toml {arguments} --out out").replace("  ", " "));
-        let message = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(output.status.code(), Some(2), "{message}");
-        assert!(message.contains(expected), "{message:?} lacks {expected:?}");
-        assert_eq!(message.lines().count(), 1, "{message}");
+        folder.write("design.toml", design);
+        folder.refuse(&format!("study design.toml {arguments} --out out"), expected);
     };
     let study = one_at_a_time();
     refused("", "seed = 3".to_owned(), "design.toml: ");
@@ -302,15 +272,9 @@ fn what_is_no_design_is_refused_in_one_line() {
         comparison.replace("number-of-parts", "ari-too-few-clusters"),
         "names `ari-too-few-clusters`",
     );
-    fs::create_dir_all(folder.path().join("other/checkpoints")).unwrap();
-    fs::write(folder.path().join("design.toml"), &comparison).unwrap();
-    let foreign = bodyschema(folder.path(), "study design.toml --out other");
-    assert!(
-        foreign.status.code() == Some(2)
-            && String::from_utf8(foreign.stderr).unwrap().contains("another command")
-    );
-    let output = bodyschema(folder.path(), "study nothing.toml --out out");
-    assert_eq!(output.status.code(), Some(2));
-    let message = String::from_utf8(output.stderr).unwrap();
-    assert!(message.contains("nothing.toml: no such file") && message.contains("multiverse"), "{message}");
+    fs::create_dir_all(folder.at("other/checkpoints")).unwrap();
+    folder.write("design.toml", &comparison);
+    folder.refuse("study design.toml --out other", "another command");
+    folder.refuse("study nothing.toml --out out", "nothing.toml: no such file");
+    folder.refuse("study nothing.toml --out out", "multiverse");
 }

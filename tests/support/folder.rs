@@ -70,6 +70,14 @@ impl Folder {
         said.out
     }
 
+    /// A run that succeeds, whatever it warns of.
+    #[track_caller]
+    pub fn done(&self, arguments: &str) -> Said {
+        let said = self.run(arguments);
+        assert_eq!(said.status, Some(0), "{arguments}: {said:?}");
+        said
+    }
+
     /// An experiment: whether small ones reproduce the paper's claims (status 0) or not (1) does not matter.
     #[track_caller]
     pub fn reproduce(&self, arguments: &str) -> Said {
