@@ -50,13 +50,14 @@ use crate::stages::quantise::{Quantise, quantise};
 use crate::stages::rigid_parts::{MIN_SENSORS, RigidParts, rigid_parts, stratified};
 use crate::stages::sense::Tactile;
 
-/// Sensors whose distances are computed, spread over all.
+/// Sensors that parts are searched for among, and distances computed of, spread over all.
 const MAX_SENSORS: usize = 800;
 /// Samples that distances are computed from, spread over all.
 const MAX_SAMPLES: usize = 20_000;
 
-/// Residual up to which the motion of its part explains a sensor: without noise, and where most sensors have some.
-const EXPLAINED: [f64; 2] = [0.05, 0.2];
+/// Largest share of a sensor's mean square that the motion of its part may leave, if it explains the sensor: where few sensors are noisy,
+/// and where most are.
+const MAX_RESIDUAL: [f64; 2] = [0.05, 0.2];
 /// Shares of sensors that are explained from which on rigid parts fit a recording, and may fit it.
 const GOOD: f64 = 0.8;
 const DOUBTFUL: f64 = 0.65;
@@ -73,16 +74,16 @@ const LOOP: f64 = 1e-3;
 /// changing gaits, of which many trees are wrong (docs/estimate.md). A recorded walk may have less, but consists of more motions.
 const SIMILAR: f64 = 0.1;
 
-/// Whether rigid parts explain what sensors felt.
+/// Whether rigid parts explain what sensors felt. The first of these that applies:
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Verdict {
+    /// Parts and tree mean nothing. Rigid parts explain fewer than 65 % of the sensors, sensors do not read 0 at rest, the movement repeats
+    /// itself, or few sensors feel something at a time (not tested where most sensors are noisy).
+    DoesNotFit,
     /// They explain at least 80 % of the sensors, over 1,000 samples or more, and the movement does not come back to similar states.
     Good,
-    /// They explain at least 65 % of the sensors.
+    /// All else.
     Doubtful,
-    /// They explain fewer, sensors do not read 0 at rest, few sensors feel something at a time, or the movement repeats itself: parts and
-    /// tree mean nothing.
-    DoesNotFit,
 }
 
 impl fmt::Display for Verdict {
@@ -98,7 +99,7 @@ impl fmt::Display for Verdict {
 /// How well rigid parts explain a recording: said before any tree.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Fit {
-    /// Whether they do.
+    /// Whether rigid parts explain it.
     pub verdict: Verdict,
     /// The share of sensors that the motion of a part explains, 0 to 1. The ends of thin parts, which only joints assign, do not
     /// count as explained.
@@ -115,7 +116,7 @@ impl Fit {
     /// consists of few motions, and comes back to similar states.
     fn new(parts: &RigidParts, recording: &Recording, novelty: f64, comes_back: bool) -> Self {
         let is_noisy = 2 * recording.noisy > recording.sensors.len();
-        let most = EXPLAINED[usize::from(is_noisy)];
+        let most = MAX_RESIDUAL[usize::from(is_noisy)];
         let own = parts.labels.iter().zip(&parts.residuals);
         let count =
             own.filter(|(label, residual)| !parts.unassigned.contains(label) && **residual <= most).count();
@@ -162,7 +163,7 @@ pub struct Estimate {
     pub parts: RigidParts,
     /// How the parts are joined.
     pub joints: Joints,
-    /// The sensors whose distances were computed, as the recording counts them, rising.
+    /// The sensors whose distances were computed: places among the sensors that the recording keeps, rising.
     pub mapped: Vec<usize>,
     /// Their distances, in bits.
     pub distances: Distances,

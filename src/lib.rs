@@ -10,7 +10,8 @@
 //! benchmarks `estimate`, `src/study` runs many configurations, `src/analysis` judges claims, `src/report` writes pages and pictures,
 //! and `src/cli` has a file for each subcommand.
 //!
-//! A body also moves as a file has recorded it ([`movement`]). For one's own robot, a [`recording`] is cleaned, and [`estimate`](mod@estimate) finds its parts and tree.
+//! A body also moves as a BVH file has recorded it ([`movement`]); `src/files/import` makes bodies of BVH, URDF and MJCF. For one's own robot,
+//! a [`recording`] is cleaned, and [`estimate`](mod@estimate) finds its parts, its tree and the bootstrap support of each joint.
 //!
 //! From a movement to a tree:
 //!
@@ -40,9 +41,9 @@
 //! let symbols = quantise(&tactile, &settings.quantise);
 //! let distances = information_metric(&symbols); // bits
 //! let map = ClassicalScaling::new(&distances, 9)?.coordinates(9)?; // 840 points in 9 dimensions
-//! let draws = infer(&map, Model::DpgmmLj, schema, seed, simulation, &|| ())?;
+//! let samples = infer(&map, Model::DpgmmLj, schema, seed, simulation, &|| ())?;
 //!
-//! let best = best(&draws); // the posterior sample of highest log p(x, z)
+//! let best = best(&samples); // the posterior sample of highest log p(x, z)
 //! for edge in &best.tree {
 //!     println!("component {} is joined to component {}", edge.child, edge.parent);
 //! }

@@ -272,7 +272,7 @@ pub fn infer_and_score(
     tick: &(dyn Fn() + Sync),
 ) -> Result<Inference, StageError> {
     let (schema, Condition { model, coordination, dimension }) = (&settings.schema, condition);
-    let draws = match &body.maps {
+    let samples = match &body.maps {
         None => {
             (0..schema.chains).for_each(|_| tick());
             one_part(body.truth.labels.len(), schema)
@@ -298,8 +298,8 @@ pub fn infer_and_score(
             tree_correct: score.tree_correct,
         }
     };
-    let records = draws.iter().map(record).collect();
-    Ok(Inference { records, best: best(&draws).clone(), resolution: body.resolution })
+    let records = samples.iter().map(record).collect();
+    Ok(Inference { records, best: best(&samples).clone(), resolution: body.resolution })
 }
 
 /// Ward's method, k-means and GMM with each number of clusters on one body map (figure 8a).

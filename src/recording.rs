@@ -13,14 +13,14 @@ use crate::stages::usable::{Fault, Missing, Usable, usable_with};
 /// A recording of sensors that tell something, at samples at which they do.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recording {
-    /// Pressures of these sensors at these samples; smoothed where a sensor has noise, with 0 where a pressure is within it. NaN where
-    /// a value is missing.
+    /// Pressures of these sensors at these samples. Those of a noisy sensor are smoothed, and 0 where they are within its noise. NaN where a
+    /// value is missing.
     pub tactile: Tactile,
-    /// The sensors, as they were counted before, rising.
+    /// The sensors that are kept: their numbers in the uncleaned recording, from 0, rising.
     pub sensors: Vec<usize>,
     /// The sensors that were left out, rising, and why.
     pub dropped: Vec<(usize, Fault)>,
-    /// The samples, as they were counted before, rising.
+    /// The samples that are kept: their numbers in the uncleaned recording, from 0, rising.
     pub samples: Vec<usize>,
     /// How many samples were left out, because most sensors have no value there.
     pub lost_samples: usize,
@@ -35,20 +35,20 @@ pub struct Recording {
 /// What a user says of a recording, in place of what the data tell.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Cleaning {
-    /// Whether values at the end of a sensor's range are no sign of saturation, and count.
+    /// Keep values at the end of a sensor's range, instead of taking them for saturated, and so for missing.
     pub keep_saturated: bool,
     /// Whether negative pressures are signal; if not, they count as 0.
     pub signed: Option<bool>,
 }
 
 impl Recording {
-    /// Cleans a recording of M sensors as the data tell. It is [`Recording::cleaned`] with nothing said.
+    /// Cleans a recording of M sensors as the data tell. It is [`Recording::cleaned`] with the default [`Cleaning`].
     pub fn new(tactile: Tactile) -> Self {
         Self::cleaned(tactile, Cleaning::default())
     }
 
     /// Cleans a recording of M sensors: drops samples at which most sensors have no value, then sensors that are dead, constant or
-    /// mostly missing, and smooths the noisy ones of the others. It may drop all. Infinite and saturated values count as missing.
+    /// mostly missing, and smooths the noisy ones of the others. It may drop all sensors. Infinite and saturated values count as missing.
     pub fn cleaned(mut tactile: Tactile, Cleaning { keep_saturated, signed }: Cleaning) -> Self {
         if signed == Some(false) {
             // A comparison with NaN is false, so that missing values stay missing.

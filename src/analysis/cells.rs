@@ -10,7 +10,7 @@ use super::statistics::Estimate;
 /// What a table says of a value beside the value itself; a row contains these columns by `#[serde(flatten)]`.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct EstimateCells {
-    /// Number of draws, or of whatever else the value is over.
+    /// Number of posterior samples, or of whatever else the value is over.
     pub n: usize,
     /// Lower end of the 95 % interval.
     #[serde(deserialize_with = "number_or_empty")]

@@ -47,9 +47,9 @@ pub(crate) struct Judged {
     pub place: String,
     /// The verdict.
     pub verdict: Verdict,
-    /// The same of the draws of highest log posterior, where the claim counts draws: an extension.
+    /// The same of the posterior samples of highest log posterior, where the claim counts them: an extension.
     pub best: Option<(Estimate, String)>,
-    /// The reading of the paper that the draws follow.
+    /// The reading of the paper that the posterior samples follow.
     pub reading: Sampler,
     /// How often single bodies show it, where that was asked for.
     pub single_bodies: Option<SingleBodies>,
@@ -71,7 +71,7 @@ pub(crate) fn headline(experiment: Experiment, evidence: &Evidence) -> Judged {
 
 fn judge_one(claim: Claim, evidence: &Evidence, best: &Evidence) -> Judged {
     let (reproduced, place, verdict) = judge_claim(&claim, evidence);
-    let best = claim.measure.counts_draws().then(|| {
+    let best = claim.measure.counts_samples().then(|| {
         let (estimate, place, _) = judge_claim(&claim, best);
         (estimate, place)
     });

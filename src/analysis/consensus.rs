@@ -1,6 +1,6 @@
 //! Sum up many partitions by one: the one that is nearest to all, and how sure each label is.
 //!
-//! Labels of different draws do not compare: part 2 of one may be part 0 of another. So draws are compared by their
+//! Labels of different samples do not compare: part 2 of one may be part 0 of another. So samples are compared by their
 //! partitions, and labels are matched to those of the consensus.
 
 use std::collections::HashMap;
@@ -9,7 +9,7 @@ use crate::numerics::partition::{named_by_appearance, sizes};
 use crate::stages::schema::Sample;
 use crate::stages::tree::Edge;
 
-/// Draws that are candidates for the consensus, at most: the most frequent partition, and others evenly.
+/// Posterior samples that are candidates for the consensus, at most: the most frequent partition, and others evenly.
 const MOST_CANDIDATES: usize = 100;
 
 /// The consensus of some partitions.
@@ -17,21 +17,21 @@ const MOST_CANDIDATES: usize = 100;
 pub struct Consensus {
     /// The part of each sensor: 0, 1, … in order of their first sensors.
     pub labels: Vec<usize>,
-    /// Of each sensor, the share of draws that have it in the part that matches its own.
+    /// Of each sensor, the share of posterior samples that have it in the part that matches its own.
     pub certainty: Vec<f64>,
-    /// Mean variation of information between it and the draws, in bits: 0 if all draws agree.
+    /// Mean variation of information between it and the posterior samples, in bits: 0 if all agree.
     pub loss: f64,
 }
 
-/// The partition with the least mean variation of information to all draws (Meilă 2007; Wade and Ghahramani 2018), among
-/// 100 of those drawn, and those that then give each sensor the part which most draws give it: where many sensors are
-/// uncertain, no draw has all of them right.
+/// The partition with the least mean variation of information to all samples (Meilă 2007; Wade and Ghahramani 2018), among
+/// 100 of those drawn, and those that then give each sensor the part which most of them give it: where many sensors are
+/// uncertain, no sample has all of them right.
 ///
 /// # Panics
 /// If there is no partition.
-pub fn consensus(draws: &[&[usize]]) -> Consensus {
+pub fn consensus(samples: &[&[usize]]) -> Consensus {
     let mut counts: HashMap<Vec<usize>, usize> = HashMap::new();
-    draws.iter().for_each(|labels| *counts.entry(named_by_appearance(labels)).or_default() += 1);
+    samples.iter().for_each(|labels| *counts.entry(named_by_appearance(labels)).or_default() += 1);
     let mut distinct: Vec<(Vec<usize>, usize)> = counts.into_iter().collect();
     // The order of a map is its own, so equal counts go by their labels.
     distinct.sort_by(|a, b| b.1.cmp(&a.1).then_with(|| a.0.cmp(&b.0)));
@@ -40,14 +40,14 @@ pub fn consensus(draws: &[&[usize]]) -> Consensus {
             .iter()
             .map(|(other, count)| *count as f64 * variation_of_information(labels, other))
             .sum();
-        total / draws.len() as f64
+        total / samples.len() as f64
     };
     // Of equally frequent ones, the first would be those that merge early sensors.
     let stride = distinct.len().div_ceil(MOST_CANDIDATES);
     let candidates = distinct.iter().step_by(stride).map(|(labels, _)| (loss(labels), labels));
     let (mut least, labels) = candidates
         .reduce(|kept, next| if next.0 < kept.0 { next } else { kept })
-        .expect("draws must not be empty");
+        .expect("samples must not be empty");
     let mut labels = labels.clone();
     loop {
         let votes = votes(&labels, &distinct);
@@ -61,12 +61,12 @@ pub fn consensus(draws: &[&[usize]]) -> Consensus {
             (least, labels) = (loss, by_vote);
             continue;
         }
-        let own = votes.iter().zip(&labels).map(|(votes, label)| votes[*label] as f64 / draws.len() as f64);
+        let own = votes.iter().zip(&labels).map(|(votes, label)| votes[*label] as f64 / samples.len() as f64);
         return Consensus { certainty: own.collect(), labels, loss: least };
     }
 }
 
-/// Of each sensor, how many draws have it in the part that matches each part of `labels`.
+/// Of each sensor, how many posterior samples have it in the part that matches each part of `labels`.
 fn votes(labels: &[usize], distinct: &[(Vec<usize>, usize)]) -> Vec<Vec<usize>> {
     let parts = labels.iter().max().map_or(0, |largest| largest + 1);
     let mut votes = vec![vec![0; parts]; labels.len()];
@@ -81,15 +81,15 @@ fn votes(labels: &[usize], distinct: &[(Vec<usize>, usize)]) -> Vec<Vec<usize>> 
     votes
 }
 
-/// Names the clusters of a draw after the parts of the consensus that they match; those that match none get the numbers
+/// Names the clusters of a sample after the parts of the consensus that they match; those that match none get the numbers
 /// after them. Its tree goes with them.
-pub(crate) fn named_after(consensus: &[usize], draw: &mut Sample) {
-    let mut names = matched(consensus, &draw.labels);
+pub(crate) fn named_after(consensus: &[usize], sample: &mut Sample) {
+    let mut names = matched(consensus, &sample.labels);
     let mut next = consensus.iter().max().map_or(0, |largest| largest + 1);
-    for label in &mut draw.labels {
+    for label in &mut sample.labels {
         *label = *names.entry(*label).or_insert_with(|| (next, next += 1).0);
     }
-    for edge in &mut draw.tree {
+    for edge in &mut sample.tree {
         let name = |label: usize| names.get(&label).copied().unwrap_or(label);
         *edge = Edge { child: name(edge.child), parent: name(edge.parent) };
     }

@@ -10,24 +10,24 @@ pub(crate) const LARGEST_R_HAT: f64 = 1.01;
 /// From this effective sample size on, R̂ can be trusted (section 4).
 pub(crate) const LEAST_ESS: f64 = 400.0;
 
-/// How well chains have mixed, by a number of each of their draws.
+/// How well chains have mixed, by a number of each of their posterior samples.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Mixing {
     /// R̂, the larger of that of the ranks and that of the ranks about the median; `None` where there are fewer than four
-    /// draws of a chain.
+    /// posterior samples of a chain.
     pub r_hat: Option<f64>,
     /// Bulk effective sample size.
     pub ess: Option<f64>,
 }
 
-/// Of the draws of each chain, as many of each.
+/// Of the posterior samples of each chain, as many of each.
 pub(crate) fn mixing(chains: &[Vec<f64>]) -> Mixing {
     let length = chains.iter().map(Vec::len).min().unwrap_or(0);
     if length < 4 || chains.iter().flatten().any(|x| !x.is_finite()) {
         return Mixing { r_hat: None, ess: None };
     }
     let halves = halved(chains);
-    // The draws of chains that all stay at one value have no ranks to compare. If that value is the same, they agree.
+    // The samples of chains that all stay at one value have no ranks to compare. If that value is the same, they agree.
     let first = chains[0][0];
     if chains.iter().flatten().all(|x| *x == first) {
         return Mixing { r_hat: Some(1.0), ess: Some((chains.len() * length) as f64) };
@@ -40,7 +40,7 @@ pub(crate) fn mixing(chains: &[Vec<f64>]) -> Mixing {
     Mixing { r_hat: Some(r_hat), ess: Some(ess(&ranks)) }
 }
 
-/// The first and second half of each chain; of an odd number of draws, the middle one is left out.
+/// The first and second half of each chain; of an odd number of posterior samples, the middle one is left out.
 fn halved(chains: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let half = |chain: &Vec<f64>| {
         let size = chain.len() / 2;
@@ -49,16 +49,16 @@ fn halved(chains: &[Vec<f64>]) -> Vec<Vec<f64>> {
     chains.iter().flat_map(half).collect()
 }
 
-/// Normal scores of the ranks of all draws; equal ones share the mean of their ranks (Blom's offsets).
+/// Normal scores of the ranks of all samples; equal ones share the mean of their ranks (Blom's offsets).
 fn rank_normalised(chains: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let mut order: Vec<(f64, usize, usize)> = Vec::new();
-    for (chain, draws) in chains.iter().enumerate() {
-        order.extend(draws.iter().enumerate().map(|(at, x)| (*x, chain, at)));
+    for (chain, samples) in chains.iter().enumerate() {
+        order.extend(samples.iter().enumerate().map(|(at, x)| (*x, chain, at)));
     }
     order.sort_by(|a, b| a.0.total_cmp(&b.0));
     let normal = Normal::standard();
     let total = order.len() as f64;
-    let mut scores: Vec<Vec<f64>> = chains.iter().map(|draws| vec![0.0; draws.len()]).collect();
+    let mut scores: Vec<Vec<f64>> = chains.iter().map(|samples| vec![0.0; samples.len()]).collect();
     let mut start = 0;
     while start < order.len() {
         let end = start + order[start..].iter().take_while(|(x, ..)| *x == order[start].0).count();
@@ -79,7 +79,7 @@ fn variance(values: &[f64]) -> f64 {
     values.iter().map(|x| (x - centre).powi(2)).sum::<f64>() / (values.len() as f64 - 1.0)
 }
 
-/// √(var⁺ / W), with W the mean variance within chains, and var⁺ that of all draws.
+/// √(var⁺ / W), with W the mean variance within chains, and var⁺ that of all posterior samples.
 fn r_hat(chains: &[Vec<f64>]) -> f64 {
     let (within, total) = variances(chains);
     // Chains that never move, at different values: they have nothing in common.
@@ -98,10 +98,10 @@ fn variances(chains: &[Vec<f64>]) -> (f64, f64) {
 /// Effective sample size by Geyer's initial monotone sequence of autocorrelations.
 fn ess(chains: &[Vec<f64>]) -> f64 {
     let length = chains[0].len();
-    let draws = (chains.len() * length) as f64;
+    let samples = (chains.len() * length) as f64;
     let (within, total) = variances(chains);
     if total == 0.0 {
-        return draws;
+        return samples;
     }
     let centres: Vec<f64> = chains.iter().map(|chain| mean(chain)).collect();
     let autocovariance = |lag: usize| {
@@ -125,8 +125,8 @@ fn ess(chains: &[Vec<f64>]) -> f64 {
         *least = pair.min(*least);
         Some(*least)
     });
-    let time = (2.0 * falling.sum::<f64>() + last - 1.0).max(1.0 / draws.log10());
-    draws / time
+    let time = (2.0 * falling.sum::<f64>() + last - 1.0).max(1.0 / samples.log10());
+    samples / time
 }
 
 #[cfg(test)]

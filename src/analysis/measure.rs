@@ -12,16 +12,16 @@ use crate::stages::schema::{Model, Sampler};
 /// What a run offers to judge claims by.
 #[derive(Debug, Clone)]
 pub(crate) struct Evidence {
-    /// All draws.
+    /// All posterior samples.
     pub conditions: Conditions,
     /// The clusterings that are told the number of clusters.
     pub baselines: Vec<BaselineEstimate>,
-    /// The reading of the paper that the draws follow.
+    /// The reading of the paper that the posterior samples follow.
     pub reading: Sampler,
 }
 
 impl Evidence {
-    /// The draws of these simulations, each as often as it is named, as those of one.
+    /// The posterior samples of these simulations, each as often as it is named, as those of one.
     pub(crate) fn redrawn(&self, simulations: &[usize]) -> Self {
         let (baselines, reading) = (self.baselines.clone(), self.reading);
         Self { conditions: self.conditions.redrawn(simulations), baselines, reading }
@@ -66,13 +66,13 @@ pub(crate) fn measure(measure: &Measure, evidence: &Evidence) -> Vec<Placed> {
     }
 }
 
-/// Rate of right trees among the eligible draws of several conditions together.
+/// Rate of right trees among the eligible posterior samples of several conditions together.
 fn pooled_tree_rate(at: &At, conditions: &Conditions) -> Placed {
     let all: Vec<Condition> = places(at, conditions).into_iter().map(|(_, condition)| condition).collect();
     ("all together".to_owned(), conditions.tree_rate(&all))
 }
 
-/// Share of draws that are eligible and have the right tree.
+/// Share of posterior samples that are eligible and have the right tree.
 fn tree_share(conditions: &Conditions, condition: Condition) -> Estimate {
     let right = |record: &Record| Some(f64::from(u8::from(record.eligible && record.tree_correct)));
     conditions.rate(&conditions.by_simulation(condition, right))

@@ -1,4 +1,4 @@
-//! Sum up the draws of the split–merge sampler: how many parts there are, which sensor is on which, how the parts are joined,
+//! Sum up the samples of the split–merge sampler: how many parts there are, which sensor is on which, how the parts are joined,
 //! how sure each is, and whether the chains have mixed.
 
 use std::collections::BTreeMap;
@@ -11,39 +11,39 @@ use crate::stages::evaluate::parts;
 use crate::stages::schema::{InferenceError, Model, Sample, Schema, TreePosterior, tree_over};
 use crate::stages::tree::Edge;
 
-/// What the draws say.
+/// What the posterior samples say.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Posterior {
     /// Each number of parts that was drawn, with its probability.
     pub parts: Vec<(usize, f64)>,
-    /// The partition that is nearest to all draws.
+    /// The partition that is nearest to all posterior samples.
     pub consensus: Consensus,
     /// The tree over its parts; `None` without joints.
     pub tree: Option<TreePosterior>,
-    /// Whether the chains have mixed, by three numbers of each draw.
+    /// Whether the chains have mixed, by three numbers of each sample.
     pub mixing: Vec<(&'static str, Mixing)>,
 }
 
 impl Posterior {
-    /// Of draws from a body map; the settings, the seed and the simulation are those of the draws.
+    /// Of samples from a body map; the settings, the seed and the simulation are those of the samples.
     ///
     /// # Errors
     /// [`InferenceError::Rounding`].
     ///
     /// # Panics
-    /// If there are no draws.
+    /// If there are no posterior samples.
     pub fn of(
         map: &BodyMap,
         model: Model,
-        draws: &[Sample],
+        samples: &[Sample],
         settings: &Schema,
         seed: u64,
         simulation: usize,
     ) -> Result<Self, InferenceError> {
-        let counts: Vec<usize> = draws.iter().map(|draw| parts(&draw.labels)).collect();
-        let share = |count: usize| count as f64 / draws.len() as f64;
-        let shares = sizes(&counts).into_iter().map(|(count, draws)| (count, share(draws)));
-        let labels: Vec<&[usize]> = draws.iter().map(|draw| draw.labels.as_slice()).collect();
+        let counts: Vec<usize> = samples.iter().map(|sample| parts(&sample.labels)).collect();
+        let share = |count: usize| count as f64 / samples.len() as f64;
+        let shares = sizes(&counts).into_iter().map(|(count, of)| (count, share(of)));
+        let labels: Vec<&[usize]> = samples.iter().map(|sample| sample.labels.as_slice()).collect();
         let consensus = consensus(&labels);
         let tree = match model {
             Model::Dpgmm => None,
@@ -51,19 +51,19 @@ impl Posterior {
         };
         let of_each = |number: &dyn Fn(&Sample) -> f64| {
             let mut chains: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
-            draws.iter().for_each(|draw| chains.entry(draw.chain).or_default().push(number(draw)));
+            samples.iter().for_each(|sample| chains.entry(sample.chain).or_default().push(number(sample)));
             mixing(&chains.into_values().collect::<Vec<_>>())
         };
-        let agreement = |draw: &Sample| adjusted_rand_index(&draw.labels, &consensus.labels);
+        let agreement = |sample: &Sample| adjusted_rand_index(&sample.labels, &consensus.labels);
         let mixing = vec![
-            ("number of parts", of_each(&|draw| parts(&draw.labels) as f64)),
-            ("log posterior", of_each(&|draw| draw.log_posterior.unwrap_or(f64::NAN))),
+            ("number of parts", of_each(&|sample| parts(&sample.labels) as f64)),
+            ("log posterior", of_each(&|sample| sample.log_posterior.unwrap_or(f64::NAN))),
             ("agreement with the consensus", of_each(&agreement)),
         ];
         Ok(Self { parts: shares.collect(), consensus, tree, mixing })
     }
 
-    /// The consensus and the likeliest tree over it, as a draw.
+    /// The consensus and the likeliest tree over it, as a sample.
     pub fn draw(&self) -> Sample {
         let edges = self.tree.iter().flat_map(|tree| &tree.tree);
         Sample {

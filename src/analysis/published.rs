@@ -81,17 +81,17 @@ fn joints() -> Vec<Model> {
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case", deny_unknown_fields)]
 pub(crate) enum Measure {
-    /// Rate of right trees among the eligible draws, at each condition.
+    /// Rate of right trees among the eligible posterior samples, at each condition.
     TreeRate {
         /// The conditions.
         at: At,
     },
-    /// The same over the draws of all conditions together.
+    /// The same over the posterior samples of all conditions together.
     PooledTreeRate {
         /// The conditions.
         at: At,
     },
-    /// Share of all draws that are eligible and have the right tree, at each condition.
+    /// Share of all posterior samples that are eligible and have the right tree, at each condition.
     TreeShare {
         /// The conditions.
         at: At,
@@ -139,7 +139,7 @@ pub(crate) enum Measure {
     /// The smallest dimension from which on every tree rate is at least one half.
     FirstDimension {},
     /// p value of the Kruskal–Wallis test that the simulations' tree rates have one distribution at all p
-    /// with eligible draws. The simulation is the unit, so that it takes several.
+    /// with eligible posterior samples. The simulation is the unit, so that it takes several.
     TreeDependence {},
     /// Share of the conditions, methods by dimensions, in which the mean ARI of the clusterings that are
     /// told the number of clusters exceeds a threshold.
@@ -168,7 +168,7 @@ pub(crate) enum Measure {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Unit {
-    /// A fraction from 0 to 1: of draws, conditions or dimensions.
+    /// A fraction from 0 to 1: of posterior samples, conditions or dimensions.
     Rate,
     /// A number of parts.
     Parts,
@@ -200,8 +200,8 @@ impl Measure {
         })
     }
 
-    /// Whether it counts draws, so that it can count the draw of highest log posterior alone.
-    pub(crate) fn counts_draws(&self) -> bool {
+    /// Whether it counts posterior samples, so that it can count the one of highest log posterior alone.
+    pub(crate) fn counts_samples(&self) -> bool {
         matches!(
             self,
             Self::TreeRate { .. }

@@ -42,23 +42,23 @@ pub(crate) fn share(held: &[Held], rng: &mut impl Rng) -> Estimate {
     Estimate { value: Some(value), n, interval: Some(interval), simulations: movements.len(), spread: None }
 }
 
-/// The draws of a specification.
+/// The posterior samples of a specification.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Rate {
     /// The movement, with its bodies.
     pub movement: usize,
-    /// Successes and draws of each body.
+    /// Successes and posterior samples of each body.
     pub bodies: Vec<(usize, usize)>,
 }
 
 impl Rate {
-    /// Number of draws.
-    pub(crate) fn draws(&self) -> usize {
-        self.bodies.iter().map(|(_, draws)| draws).sum()
+    /// Number of posterior samples.
+    pub(crate) fn samples(&self) -> usize {
+        self.bodies.iter().map(|(_, samples)| samples).sum()
     }
 
     fn rate(&self) -> f64 {
-        self.bodies.iter().map(|(right, _)| right).sum::<usize>() as f64 / self.draws() as f64
+        self.bodies.iter().map(|(right, _)| right).sum::<usize>() as f64 / self.samples() as f64
     }
 }
 
@@ -84,7 +84,7 @@ pub(crate) struct JointInference {
 /// If `true_rate` were that of every specification, in what share of simulated multiverses would as few rates, or fewer, be
 /// within `range`? After the joint test of Simonsohn, Simmons and Nelson (2020), with simulation in place of permutation.
 ///
-/// Bodies differ: their rates are drawn from a beta distribution with the correlation that is seen between the draws of one
+/// Bodies differ: their rates are drawn from a beta distribution with the correlation that is seen between the samples of one
 /// body. All specifications of a movement have the same bodies; those of one must stand together. `None` without a rate.
 pub(crate) fn joint_inference(
     rates: &[Rate],
@@ -115,11 +115,11 @@ pub(crate) fn joint_inference(
                         .bodies
                         .iter()
                         .zip(&bodies)
-                        .map(|((_, draws), rate)| {
-                            Binomial::new(*draws as u64, *rate).expect("a rate").sample(rng)
+                        .map(|((_, samples), rate)| {
+                            Binomial::new(*samples as u64, *rate).expect("a rate").sample(rng)
                         })
                         .sum();
-                    count += usize::from(inside(right as f64 / one.draws() as f64));
+                    count += usize::from(inside(right as f64 / one.samples() as f64));
                 }
             }
             share_of(count)
@@ -138,7 +138,7 @@ pub(crate) fn joint_inference(
     })
 }
 
-/// The correlation of two draws of one body, from all specifications with several bodies: the estimator of the analysis of
+/// The correlation of two samples of one body, from all specifications with several bodies: the estimator of the analysis of
 /// variance (Ridout, Demetrio and Firth 1999), its parts summed over specifications; not below 0.
 fn correlation(rates: &[Rate]) -> f64 {
     let (mut above, mut below) = (0.0, 0.0);
@@ -146,17 +146,17 @@ fn correlation(rates: &[Rate]) -> f64 {
         let bodies: Vec<(f64, f64)> = one
             .bodies
             .iter()
-            .filter(|(_, draws)| *draws > 0)
-            .map(|&(right, draws)| (right as f64 / draws as f64, draws as f64))
+            .filter(|(_, samples)| *samples > 0)
+            .map(|&(right, samples)| (right as f64 / samples as f64, samples as f64))
             .collect();
-        let (count, draws) = (bodies.len() as f64, one.draws() as f64);
-        if count < 2.0 || draws <= count {
+        let (count, samples) = (bodies.len() as f64, one.samples() as f64);
+        if count < 2.0 || samples <= count {
             continue;
         }
         let rate = one.rate();
         let between = bodies.iter().map(|(own, n)| n * (own - rate).powi(2)).sum::<f64>() / (count - 1.0);
-        let within = bodies.iter().map(|(own, n)| n * own * (1.0 - own)).sum::<f64>() / (draws - count);
-        let size = (draws - bodies.iter().map(|(_, n)| n * n).sum::<f64>() / draws) / (count - 1.0);
+        let within = bodies.iter().map(|(own, n)| n * own * (1.0 - own)).sum::<f64>() / (samples - count);
+        let size = (samples - bodies.iter().map(|(_, n)| n * n).sum::<f64>() / samples) / (count - 1.0);
         above += between - within;
         below += between + (size - 1.0) * within;
     }

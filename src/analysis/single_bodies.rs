@@ -9,7 +9,7 @@ use super::one_body::SingleBodies;
 use super::published::{Claim, Experiment};
 use super::statistics::rate;
 
-/// Minimum number of eligible draws of a body at which its rate is compared with a published one.
+/// Minimum number of eligible posterior samples of a body at which its rate is compared with a published one.
 const ELIGIBLE: usize = 5;
 
 /// Adds to judged claims how often single bodies show them; `bodies` has the evidence of each body.
@@ -29,7 +29,7 @@ pub(crate) fn add_single_bodies(experiment: Experiment, judged: &mut [Judged], b
     }
 }
 
-/// Whether the published value would have been seen in a body, judged on its draws alone; `None` without a value.
+/// Whether the published value would have been seen in a body, judged on its samples alone; `None` without a value.
 fn is_seen(judged: &Judged) -> Option<bool> {
     let value = judged.reproduced.value?;
     match interval_of_counts(&judged.claim, judged.reproduced.n) {
@@ -53,9 +53,9 @@ mod tests {
     use crate::pipeline::Record;
     use crate::stages::schema::{Model, Sampler};
 
-    /// A body with some eligible draws at d = 14 and p = 0.9, of which some have the right tree.
+    /// A body with some eligible posterior samples at d = 14 and p = 0.9, of which some have the right tree.
     fn body(right: usize, eligible: usize, parts: usize) -> Evidence {
-        let draw = |chain: usize| Record {
+        let sample = |chain: usize| Record {
             simulation: 1,
             coordination: 0.9,
             dimension: 14,
@@ -68,7 +68,7 @@ mod tests {
             eligible: true,
             tree_correct: chain < right,
         };
-        let conditions = Conditions::new((0..eligible).map(draw).collect(), 1, 1);
+        let conditions = Conditions::new((0..eligible).map(sample).collect(), 1, 1);
         Evidence { conditions, baselines: Vec::new(), reading: Sampler::Equations }
     }
 
@@ -83,7 +83,7 @@ mod tests {
         // 11 of 13 has the interval 0.58 to 0.96, 77 of 91 has 0.76 to 0.91.
         let found =
             headline(&[body(3, 5, 5), body(5, 5, 5), body(60, 100, 5), body(85, 100, 5), body(4, 4, 5)]);
-        assert_eq!((found.alone.n, found.alone.value), (4, Some(0.5)), "four draws are too few");
+        assert_eq!((found.alone.n, found.alone.value), (4, Some(0.5)), "four samples are too few");
         assert_eq!(found.verdict(), Some(OneBody::Usual));
         assert_eq!(headline(&[body(0, 20, 5)]).verdict(), Some(OneBody::Never));
         assert_eq!(headline(&[body(1, 2, 5)]).verdict(), None);

@@ -206,27 +206,30 @@ impl Infer {
         prepare_folder(out)?;
         let truth = self.truth.read(map.points())?;
         let bar = progress(schema.chains as u64, "infer".to_owned());
-        let mut draws = infer(&map, self.model, schema, experiment.seed, 1, &|| bar.inc(1))
+        let mut samples = infer(&map, self.model, schema, experiment.seed, 1, &|| bar.inc(1))
             .with_context(|| input.display().to_string())?;
         bar.finish_and_clear();
         let posterior = (schema.sampler == Sampler::SplitMerge)
-            .then(|| Posterior::of(&map, self.model, &draws, schema, experiment.seed, 1))
+            .then(|| Posterior::of(&map, self.model, &samples, schema, experiment.seed, 1))
             .transpose()?;
         if let Some(posterior) = &posterior {
-            draws.iter_mut().for_each(|draw| named_after(&posterior.consensus.labels, draw));
+            samples.iter_mut().for_each(|sample| named_after(&posterior.consensus.labels, sample));
         }
         let scores: Option<Vec<Score>> = truth.as_ref().map(|truth| {
-            draws.iter().map(|draw| score(&draw.labels, &draw.tree, truth, evaluate.eligible_ari)).collect()
+            samples
+                .iter()
+                .map(|sample| score(&sample.labels, &sample.tree, truth, evaluate.eligible_ari))
+                .collect()
         });
-        npy::write_assignments(&out.join("assignments.npy"), &draws)?;
-        tables::write_draws(&out.join("samples.csv"), &draws, schema.keep, scores.as_deref())?;
-        tables::write_trees(&out.join("trees.csv"), &draws, schema.keep)?;
-        print_run(self.model, &map, draws.len(), &settings, out)?;
+        npy::write_assignments(&out.join("assignments.npy"), &samples)?;
+        tables::write_samples(&out.join("samples.csv"), &samples, schema.keep, scores.as_deref())?;
+        tables::write_trees(&out.join("trees.csv"), &samples, schema.keep)?;
+        print_run(self.model, &map, samples.len(), &settings, out)?;
         if let Some(posterior) = &posterior {
             posterior::write(out, posterior)?;
             posterior::print(posterior, truth.as_ref(), evaluate.eligible_ari)?;
         } else {
-            print_draws(&draws, scores.as_deref())?;
+            print_samples(&samples, scores.as_deref())?;
         }
         Ok(ExitCode::SUCCESS)
     }
@@ -250,9 +253,9 @@ impl Infer {
     }
 }
 
-fn print_run(model: Model, map: &BodyMap, draws: usize, settings: &Settings, out: &Path) -> Result<()> {
+fn print_run(model: Model, map: &BodyMap, samples: usize, settings: &Settings, out: &Path) -> Result<()> {
     say(format!(
-        "{} of {} sensors in {} dimensions: {draws} posterior samples from {} chains of {} sweeps, seed {}, in {}",
+        "{} of {} sensors in {} dimensions: {samples} posterior samples from {} chains of {} sweeps, seed {}, in {}",
         model.name(),
         map.points(),
         map.dims,
@@ -263,10 +266,10 @@ fn print_run(model: Model, map: &BodyMap, draws: usize, settings: &Settings, out
     ))
 }
 
-fn print_draws(draws: &[Sample], scores: Option<&[Score]>) -> Result<()> {
-    let counts: Vec<f64> = draws.iter().map(|draw| parts(&draw.labels) as f64).collect();
+fn print_samples(samples: &[Sample], scores: Option<&[Score]>) -> Result<()> {
+    let counts: Vec<f64> = samples.iter().map(|sample| parts(&sample.labels) as f64).collect();
     say(format!("number of parts: {}", line(&mean(&counts), "mean")))?;
-    let best = best(draws);
+    let best = best(samples);
     say(format!(
         "most probable sample (highest log posterior): chain {}, {} parts",
         best.chain,

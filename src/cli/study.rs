@@ -58,7 +58,7 @@ impl Study {
         // Before hours are spent on those that come first.
         let mut configurations = plan(&design)?;
         if let Some(only) = &self.only {
-            configurations = only.of(&design, configurations)?;
+            configurations = only.select(&design, configurations)?;
         }
         let used = used_before(design.seeds());
         let out = &self.out;

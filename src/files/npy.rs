@@ -32,11 +32,11 @@ pub fn write_body_map(path: &Path, map: &BodyMap) -> Result<(), FileError> {
     write(path, [map.points(), map.dims], Order::C, map.coordinates.iter().copied())
 }
 
-/// Writes the component of each sensor as int32, draws × M.
-pub fn write_assignments(path: &Path, draws: &[Sample]) -> Result<(), FileError> {
-    let sensors = draws.first().map_or(0, |draw| draw.labels.len());
-    let labels = draws.iter().flat_map(|draw| draw.labels.iter().map(|&label| label as i32));
-    write(path, [draws.len(), sensors], Order::C, labels)
+/// Writes the component of each sensor as int32, posterior samples × M.
+pub fn write_assignments(path: &Path, samples: &[Sample]) -> Result<(), FileError> {
+    let sensors = samples.first().map_or(0, |sample| sample.labels.len());
+    let labels = samples.iter().flat_map(|sample| sample.labels.iter().map(|&label| label as i32));
+    write(path, [samples.len(), sensors], Order::C, labels)
 }
 
 /// Writes a matrix whose values come in the order given.
@@ -139,7 +139,7 @@ pub fn read_body_map(path: &Path) -> Result<BodyMap, FileError> {
     Ok(BodyMap { dims: matrix.columns, coordinates: matrix.values })
 }
 
-/// Reads the component of each sensor: how many draws, how many sensors, and their components, draw after draw.
+/// Reads the component of each sensor: how many posterior samples, how many sensors, and their components, sample after sample.
 pub fn read_assignments(path: &Path) -> Result<(usize, usize, Vec<usize>), FileError> {
     let whole = |value: f64| value >= 0.0 && value <= f64::from(i32::MAX) && value.fract() == 0.0;
     let matrix = read_matrix(path, Order::C, |value| {

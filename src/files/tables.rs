@@ -1,4 +1,4 @@
-//! Read and write tables as CSV: labels, trees, joint angles, draws.
+//! Read and write tables as CSV: labels, trees, joint angles, posterior samples.
 
 use std::path::Path;
 
@@ -232,7 +232,7 @@ pub fn write_joint_angles(
 }
 
 #[derive(Serialize)]
-struct DrawRow {
+struct SampleRow {
     chain: usize,
     #[serde(skip_serializing_if = "Option::is_none")]
     sweep: Option<usize>,
@@ -246,21 +246,21 @@ struct DrawRow {
     tree_correct: Option<bool>,
 }
 
-/// Writes `samples.csv`, a row for each draw: `chain`, `sweep` where a chain has several draws, `parts`,
+/// Writes `samples.csv`, a row for each posterior sample: `chain`, `sweep` where a chain has several, `parts`,
 /// `log_posterior`, and `ari`, `eligible` and `tree_correct` if there are scores.
-pub fn write_draws(
+pub fn write_samples(
     path: &Path,
-    draws: &[Sample],
+    samples: &[Sample],
     keep: Keep,
     scores: Option<&[Score]>,
 ) -> Result<(), FileError> {
-    let rows = draws.iter().enumerate().map(|(at, draw)| {
+    let rows = samples.iter().enumerate().map(|(at, sample)| {
         let score = scores.map(|scores| &scores[at]);
-        DrawRow {
-            chain: draw.chain,
-            sweep: (keep == Keep::All).then_some(draw.sweep),
-            parts: parts(&draw.labels),
-            log_posterior: draw.log_posterior,
+        SampleRow {
+            chain: sample.chain,
+            sweep: (keep == Keep::All).then_some(sample.sweep),
+            parts: parts(&sample.labels),
+            log_posterior: sample.log_posterior,
             ari: score.map(|score| score.ari),
             eligible: score.map(|score| score.eligible),
             tree_correct: score.map(|score| score.tree_correct),
@@ -269,21 +269,21 @@ pub fn write_draws(
     write_rows(path, rows)
 }
 
-/// Writes `trees.csv`, a row an edge: `chain`, `sweep` where a chain has several draws, `child` and `parent`,
+/// Writes `trees.csv`, a row an edge: `chain`, `sweep` where a chain has several samples, `child` and `parent`,
 /// labels as in the assignments, and, where the mixture has joints, `x1` … `xd`: the joint on the body map.
-pub fn write_trees(path: &Path, draws: &[Sample], keep: Keep) -> Result<(), FileError> {
-    let dims = draws.iter().flat_map(|draw| &draw.joints).next().map_or(0, Vec::len);
+pub fn write_trees(path: &Path, samples: &[Sample], keep: Keep) -> Result<(), FileError> {
+    let dims = samples.iter().flat_map(|sample| &sample.joints).next().map_or(0, Vec::len);
     let sweep = keep == Keep::All;
     write_whole(path, |file| {
         let mut writer = csv::Writer::from_writer(file);
         let names =
             ["chain", "sweep", "child", "parent"].into_iter().filter(|name| *name != "sweep" || sweep);
         writer.write_record(names.map(str::to_owned).chain((1..=dims).map(|k| format!("x{k}"))))?;
-        for draw in draws {
-            for (at, edge) in draw.tree.iter().enumerate() {
+        for sample in samples {
+            for (at, edge) in sample.tree.iter().enumerate() {
                 let numbers =
-                    [Some(draw.chain), sweep.then_some(draw.sweep), Some(edge.child), Some(edge.parent)];
-                let joint = draw.joints.get(at).into_iter().flatten();
+                    [Some(sample.chain), sweep.then_some(sample.sweep), Some(edge.child), Some(edge.parent)];
+                let joint = sample.joints.get(at).into_iter().flatten();
                 let numbers = numbers.into_iter().flatten().map(|number| number.to_string());
                 writer.write_record(numbers.chain(joint.map(f64::to_string)))?;
             }

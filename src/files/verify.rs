@@ -21,7 +21,7 @@ use super::{npy, tables};
 /// Numbers agree if they differ by no more than this share of the larger one, or of 1.
 pub const TOLERANCE: f64 = 1e-6;
 
-/// Rates over draws agree if they differ by no more than this many standard errors.
+/// Rates over posterior samples agree if they differ by no more than this many standard errors.
 pub const STANDARD_ERRORS: f64 = 4.0;
 
 /// What was found of one file.
@@ -40,7 +40,7 @@ pub enum Outcome {
     Same,
     /// All numbers within [`TOLERANCE`], all else the same.
     Close(String),
-    /// Other draws, whose rates are within [`STANDARD_ERRORS`].
+    /// Other posterior samples, whose rates are within [`STANDARD_ERRORS`].
     SameRates(String),
     /// Different; says where.
     Differs(String),
@@ -235,7 +235,7 @@ fn tables(path: &Path, reference: &Path) -> Result<Outcome, FileError> {
     let Some(detail) = first_difference(&own, &other) else {
         return Ok(Outcome::Close("all numbers are".to_owned()));
     };
-    // Other draws of the same posterior may still have the same rates.
+    // Other samples of the same posterior may still have the same rates.
     match (rates(path), rates(reference)) {
         (Some(own), Some(other)) => Ok(compare_rates(&own, &other, &detail)),
         _ => Ok(Outcome::Differs(detail)),
@@ -257,9 +257,9 @@ fn first_difference(own: &[Vec<String>], other: &[Vec<String>]) -> Option<String
     })
 }
 
-/// A row of any table of draws.
+/// A row of any table of posterior samples.
 #[derive(Deserialize)]
-struct DrawRow {
+struct SampleRow {
     simulation: Option<usize>,
     coordination: Option<f64>,
     dimension: Option<usize>,
@@ -268,29 +268,29 @@ struct DrawRow {
     tree_correct: bool,
 }
 
-/// Draws of one condition: all, the eligible ones, and those of them with the right tree.
+/// Posterior samples of one condition: all, the eligible ones, and those of them with the right tree.
 #[derive(Default)]
 struct Counts {
-    draws: usize,
+    samples: usize,
     eligible: usize,
     correct: usize,
 }
 
-/// Counts for each condition, if the table is one of draws that were evaluated.
+/// Counts for each condition, if the table is one of posterior samples that were evaluated.
 fn rates(path: &Path) -> Option<BTreeMap<String, Counts>> {
     let mut conditions = BTreeMap::<String, Counts>::new();
-    for draw in tables::read_rows::<DrawRow>(path).ok()? {
+    for sample in tables::read_rows::<SampleRow>(path).ok()? {
         let named = [
-            draw.simulation.map(|simulation| format!("simulation {simulation}")),
-            draw.coordination.map(|p| format!("p = {p}")),
-            draw.dimension.map(|d| format!("d = {d}")),
-            draw.model,
+            sample.simulation.map(|simulation| format!("simulation {simulation}")),
+            sample.coordination.map(|p| format!("p = {p}")),
+            sample.dimension.map(|d| format!("d = {d}")),
+            sample.model,
         ];
         let condition = named.into_iter().flatten().collect::<Vec<_>>().join(", ");
         let counts = conditions.entry(condition).or_default();
-        counts.draws += 1;
-        counts.eligible += usize::from(draw.eligible);
-        counts.correct += usize::from(draw.eligible && draw.tree_correct);
+        counts.samples += 1;
+        counts.eligible += usize::from(sample.eligible);
+        counts.correct += usize::from(sample.eligible && sample.tree_correct);
     }
     Some(conditions)
 }
@@ -306,7 +306,7 @@ fn compare_rates(
     let mut largest: f64 = 0.0;
     for ((condition, own), other) in own.iter().zip(other.values()) {
         let pairs = [
-            ("eligible", (own.eligible, own.draws), (other.eligible, other.draws)),
+            ("eligible", (own.eligible, own.samples), (other.eligible, other.samples)),
             ("correct trees", (own.correct, own.eligible), (other.correct, other.eligible)),
         ];
         for (name, own, other) in pairs {

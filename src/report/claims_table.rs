@@ -12,12 +12,12 @@ use crate::analysis::published::{Claim, HEADLINE, Unit};
 use crate::analysis::statistics::Estimate;
 use crate::stages::schema::Sampler;
 
-/// A row of `claims.csv`. A claim that counts draws has two, one for each [`Counting`].
+/// A row of `claims.csv`. A claim that counts posterior samples has two, one for each [`Counting`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Row {
     /// Short name of the claim.
     pub id: String,
-    /// Which draws are counted.
+    /// Which posterior samples are counted.
     pub counting: Counting,
     /// The reading of the paper that they follow. Beside the claims of a run, the other reading has its headline.
     #[serde(default)]
@@ -89,8 +89,8 @@ impl Row {
         "paper",
     ];
 
-    /// As published: over all draws.
-    fn all_draws(judged: &Judged) -> Self {
+    /// As published: over all posterior samples.
+    fn all_samples(judged: &Judged) -> Self {
         let Judged { claim, reproduced, place, verdict, single_bodies, .. } = judged;
         let (accepted_low, accepted_high) = claim.accept.unzip();
         let tested = single_bodies.as_ref().filter(|bodies| bodies.alone.n > 0);
@@ -160,7 +160,7 @@ impl Row {
         format!("{} ({interval}); {all} all claims", self.shown_by())
     }
 
-    /// The claim, with the reading that its draws follow where two readings have it.
+    /// The claim, with the reading that its posterior samples follow where two readings have it.
     pub fn claim(&self) -> String {
         match self.reading.filter(|_| self.id == HEADLINE) {
             Some(reading) => format!("{}, {}", self.statement, reading.in_words()),
@@ -234,13 +234,13 @@ fn count(share: f64, of: usize) -> usize {
     (share * of as f64).round() as usize
 }
 
-/// The table of claims: a row for each claim, followed by one for the best draws if the claim counts draws.
+/// The table of claims: a row for each claim, followed by one for the best samples if the claim counts samples.
 pub(crate) fn rows(judged: &[Judged]) -> Vec<Row> {
     let both = |judged: &Judged| {
         let best = judged.best.as_ref();
         let best =
             best.map(|(estimate, place)| Row::best_sample(&judged.claim, judged.reading, estimate, place));
-        std::iter::once(Row::all_draws(judged)).chain(best)
+        std::iter::once(Row::all_samples(judged)).chain(best)
     };
     judged.iter().flat_map(both).collect()
 }

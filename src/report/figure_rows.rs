@@ -5,13 +5,13 @@ use serde::{Deserialize, Serialize};
 use crate::analysis::cells::EstimateCells;
 use crate::analysis::statistics::Estimate;
 
-/// Which draws of a condition an estimate is over.
+/// Which posterior samples of a condition an estimate is over.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Counting {
-    /// As published: all draws; of trees, those with the right number of parts and ARI.
+    /// As published: all samples; of trees, those with the right number of parts and ARI.
     AllDraws,
-    /// An extension: of each simulation the draw of highest log posterior.
+    /// An extension: of each simulation the sample of highest log posterior.
     BestDraw,
 }
 
@@ -92,13 +92,13 @@ pub(crate) enum MapPoint {
 pub(crate) struct PartsRow {
     /// d.
     pub dimension: usize,
-    /// Which draws are counted.
+    /// Which posterior samples are counted.
     pub counting: Counting,
     /// Number of estimated parts.
     pub parts: usize,
-    /// Draws with that number.
+    /// Posterior samples with that number.
     pub count: usize,
-    /// Draws in all.
+    /// Posterior samples in all.
     pub n: usize,
     /// Mean number of parts.
     pub mean: f64,
@@ -108,12 +108,12 @@ pub(crate) struct PartsRow {
     pub high: Option<f64>,
 }
 
-/// A box of figure 9, over the draws of all simulations.
+/// A box of figure 9, over the posterior samples of all simulations.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct BoxRow {
     /// d.
     pub dimension: usize,
-    /// Draws.
+    /// Posterior samples.
     pub n: usize,
     /// Lowest ARI.
     pub lowest: f64,
@@ -138,13 +138,13 @@ pub(crate) struct CurveRow {
     pub method: String,
     /// Number of clusters that it was told; empty if it found the number itself.
     pub clusters: Option<usize>,
-    /// Which draws are counted.
+    /// Which posterior samples are counted.
     pub counting: Counting,
     /// p.
     pub coordination: f64,
     /// d.
     pub dimension: usize,
-    /// Mean ARI (8, 11a) or rate of right trees (10, 11b); empty without a draw.
+    /// Mean ARI (8, 11a) or rate of right trees (10, 11b); empty without a sample.
     pub value: Option<f64>,
     /// What it is over, and its interval.
     #[serde(flatten)]

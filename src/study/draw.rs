@@ -15,7 +15,7 @@ use super::levels::{DrawCounts, Level, SharedStages};
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Drawn {
     /// What it shares.
-    pub places: SharedStages,
+    pub shared_stages: SharedStages,
     /// The option of each factor of the design; `None` where options of later factors override all that it says.
     pub options: Vec<Option<usize>>,
 }
@@ -38,8 +38,8 @@ pub(super) fn drawn(design: &Design, draws: DrawCounts) -> Vec<Drawn> {
                         let options = effective(design, &all_options.collect::<Vec<_>>());
                         if known.insert((movement, options.clone())) {
                             let [movement, distances, maps] = [movement, distance, map].map(|at| at + 1);
-                            let places = SharedStages { movement, distances, maps };
-                            all.push(Drawn { places, options });
+                            let shared_stages = SharedStages { movement, distances, maps };
+                            all.push(Drawn { shared_stages, options });
                         }
                     }
                 }
@@ -64,15 +64,15 @@ fn evaluations(design: &Design) -> Vec<Vec<Option<usize>>> {
     all
 }
 
-/// The option of each factor, given the places in the sequences of movements, distances, maps and inferences.
-fn options(design: &Design, kept: &[Option<usize>], places: [usize; 4]) -> Vec<usize> {
+/// The option of each factor, given the numbers in the sequences of movements, distances, maps and inferences.
+fn options(design: &Design, kept: &[Option<usize>], numbers: [usize; 4]) -> Vec<usize> {
     let keep = design.draws.and_then(|draws| draws.keep).unwrap_or(0.0);
     let option = |(dimension, factor): (usize, &Factor)| {
         let place = match factor.level.unwrap_or(Level::Inference) {
-            Level::Movement => places[0],
-            Level::Distances => places[1],
-            Level::Map => places[2],
-            Level::Inference | Level::Evaluation => places[3],
+            Level::Movement => numbers[0],
+            Level::Distances => numbers[1],
+            Level::Map => numbers[2],
+            Level::Inference | Level::Evaluation => numbers[3],
         };
         // The design was checked: sequences have 2^16 points and 2^8 dimensions.
         let uniform = f64::from(sample(place as u32, dimension as u32, design.seed as u32));

@@ -1,4 +1,4 @@
-//! Evaluate all configurations of a grid or of draws together: in what share of them each claim holds, which factors decide, and how
+//! Evaluate all configurations of a grid or of drawn ones together: in what share of them each claim holds, which factors decide, and how
 //! it would look if the published rate were true.
 
 use std::collections::HashMap;
@@ -138,10 +138,10 @@ impl<'a> Evaluation<'a> {
         for (group, members) in self.grouped() {
             let row = |claim: &str, verdicts: &dyn Fn(&Member) -> Option<bool>| {
                 let found: Vec<Option<bool>> = members.iter().map(verdicts).collect();
-                let held = members
-                    .iter()
-                    .zip(&found)
-                    .map(|(one, holds)| Held { movement: one.row.places[0], holds: *holds == Some(true) });
+                let held = members.iter().zip(&found).map(|(one, holds)| Held {
+                    movement: one.row.shared_stages[0],
+                    holds: *holds == Some(true),
+                });
                 let held: Vec<Held> = held.collect();
                 let share = share(&held, &mut stream(design.seed, 0, "shares", 0));
                 // Movements that were not drawn are no sample of movements.
@@ -175,16 +175,16 @@ impl<'a> Evaluation<'a> {
             let with = self.with_value(at);
             let unit = |(_, factor): &(usize, &Factor)| -> Vec<usize> {
                 let unit = |(place, one): (usize, &Member)| match factor.level {
-                    Some(Level::Movement) => one.row.places[0],
-                    Some(Level::Distances) => one.row.places[1],
-                    Some(Level::Map) => one.row.places[2],
+                    Some(Level::Movement) => one.row.shared_stages[0],
+                    Some(Level::Distances) => one.row.shared_stages[1],
+                    Some(Level::Map) => one.row.shared_stages[2],
                     Some(Level::Inference | Level::Evaluation) | None => place,
                 };
                 with.iter().enumerate().map(unit).collect()
             };
             let table = Table {
                 values: with.iter().filter_map(|one| one.claims[at].value).collect(),
-                clusters: with.iter().map(|one| one.row.places[0]).collect(),
+                clusters: with.iter().map(|one| one.row.shared_stages[0]).collect(),
                 units: factors.iter().map(unit).collect(),
                 levels: factors
                     .iter()
@@ -230,11 +230,11 @@ impl<'a> Evaluation<'a> {
             simulations.entry(row.configuration).or_default().push((row.right, row.eligible));
         }
         let rate = |one: &ConfigurationRow| Rate {
-            movement: one.places[0],
+            movement: one.shared_stages[0],
             bodies: simulations.remove(&one.number).unwrap_or_default(),
         };
         let rates: Vec<Rate> =
-            self.results.configurations.iter().map(rate).filter(|rate| rate.draws() > 0).collect();
+            self.results.configurations.iter().map(rate).filter(|rate| rate.samples() > 0).collect();
         joint_inference(&rates, claim.published?, claim.accept?, &mut stream(design.seed, 0, "joint", 0))
     }
 

@@ -1,4 +1,5 @@
-//! Plan a study: list its configurations, named, one at a time around a base, as a full grid, or drawn evenly.
+//! Plan a study: list its configurations. They are named one by one, change one factor of a base at a time, form a full factorial grid, or
+//! are a quasi-random (Sobol) sample.
 
 use std::collections::HashMap;
 use std::ops::RangeInclusive;
@@ -21,8 +22,8 @@ pub(crate) struct Configuration {
     pub number: usize,
     /// Its name.
     pub name: String,
-    /// What it shares with others.
-    pub places: SharedStages,
+    /// Numbers of its movement, distances and maps; equal numbers are computed once.
+    pub shared_stages: SharedStages,
     /// The label of the option of each factor of the design; empty where it has the base's value, or later ones override it.
     pub labels: Vec<String>,
     /// What it has instead of the base's values, gains computed.
@@ -50,11 +51,11 @@ impl FromStr for Selection {
 pub(crate) fn plan(design: &Design) -> Result<Vec<Configuration>, ExperimentError> {
     let mut all = match (design.vary, design.draws) {
         (_, Some(draws)) => {
-            let drawn = drawn(design, draws).into_iter().enumerate();
-            let made = drawn.map(|(at, drawn)| {
+            let points = drawn(design, draws).into_iter().enumerate();
+            let made = points.map(|(at, drawn)| {
                 let choices = chosen(design, &drawn.options);
-                let seed = design.seed + drawn.places.movement as u64;
-                configuration(design, at, (at + 1).to_string(), drawn.places, seed, &choices)
+                let seed = design.seed + drawn.shared_stages.movement as u64;
+                configuration(design, at, (at + 1).to_string(), drawn.shared_stages, seed, &choices)
             });
             made.collect::<Result<Vec<_>, _>>()
         }
@@ -104,7 +105,7 @@ pub(crate) fn plan(design: &Design) -> Result<Vec<Configuration>, ExperimentErro
             made.collect()
         }
     }?;
-    check(design, &all)?;
+    check_simulations(design, &all)?;
     if design.draws.is_none() {
         number_stages(&mut all);
     }
@@ -136,7 +137,7 @@ fn configuration(
     design: &Design,
     at: usize,
     name: String,
-    places: SharedStages,
+    shared_stages: SharedStages,
     seed: u64,
     choices: &[Option<&Choice>],
 ) -> Result<Configuration, ExperimentError> {
@@ -154,7 +155,7 @@ fn configuration(
     settings.experiment.seed = seed;
     let labels =
         choices.iter().map(|choice| choice.map_or(String::new(), |choice| choice.label.clone())).collect();
-    Ok(Configuration { number: at + 1, name, places, labels, changes, settings })
+    Ok(Configuration { number: at + 1, name, shared_stages, labels, changes, settings })
 }
 
 /// Tables of settings over the defaults.
@@ -163,7 +164,7 @@ fn settings_of<'a>(
     name: &str,
     tables: impl IntoIterator<Item = &'a Table> + Clone,
 ) -> Result<Settings, ExperimentError> {
-    let origin = place(design, name);
+    let origin = described(design, name);
     let has_seed =
         |table: &&Table| table.get("experiment").is_some_and(|section| section.get("seed").is_some());
     if tables.clone().into_iter().any(|table| has_seed(&table)) {
@@ -178,7 +179,7 @@ fn settings_of<'a>(
 }
 
 /// A configuration, for messages.
-fn place(design: &Design, name: &str) -> String {
+fn described(design: &Design, name: &str) -> String {
     format!("{}: configuration `{name}`", design.origin)
 }
 
@@ -191,7 +192,7 @@ fn number_stages(all: &mut [Configuration]) {
             let next = known[stage].len() + 1;
             *known[stage].entry(key).or_insert(next)
         };
-        one.places = SharedStages {
+        one.shared_stages = SharedStages {
             movement: number(0, keys.movement),
             distances: number(1, keys.distances),
             maps: number(2, keys.maps),
@@ -199,10 +200,11 @@ fn number_stages(all: &mut [Configuration]) {
     }
 }
 
-/// Whether what is compared can be compared.
-fn check(design: &Design, all: &[Configuration]) -> Result<(), ExperimentError> {
-    let wrong =
-        |one: &Configuration, message: &str| Err(ExperimentError::design(&place(design, &one.name), message));
+/// That all configurations, of which there is one at least, have the same number of simulations, and drawn ones at least two.
+fn check_simulations(design: &Design, all: &[Configuration]) -> Result<(), ExperimentError> {
+    let wrong = |one: &Configuration, message: &str| {
+        Err(ExperimentError::design(&described(design, &one.name), message))
+    };
     if design.draws.is_some()
         && let Some(one) = all.iter().find(|one| one.settings.experiment.simulations < 2)
     {
@@ -221,12 +223,12 @@ fn check(design: &Design, all: &[Configuration]) -> Result<(), ExperimentError> 
 }
 
 impl Selection {
-    /// The configurations that it names, after the first, from which changes are measured; numbers stay those of the whole
-    /// design.
+    /// The configurations that it names, numbered as in the whole design. Unless configurations are drawn, the first comes too: changes are
+    /// measured from it.
     ///
     /// # Errors
     /// If it names none.
-    pub(crate) fn of(
+    pub(crate) fn select(
         &self,
         design: &Design,
         all: Vec<Configuration>,
@@ -240,7 +242,7 @@ impl Selection {
         let factor = factor.filter(|_| design.vary == Some(Vary::OneAtATime));
         let named = |one: &Configuration| {
             one.number.to_string() == *wanted
-                || range.as_ref().is_some_and(|range| range.contains(&one.places.movement))
+                || range.as_ref().is_some_and(|range| range.contains(&one.shared_stages.movement))
                 || one.name == *wanted
                 || factor.is_some_and(|at| !one.labels[at].is_empty())
         };

@@ -33,7 +33,7 @@ pub(super) struct ConfigurationRow {
     /// Its name.
     pub name: String,
     /// The movement, the matrix of distances and the body maps that it shares with others, from 1.
-    pub places: [usize; 3],
+    pub shared_stages: [usize; 3],
     /// Whether the physics step resolves all its movements.
     pub resolved: bool,
     /// Largest distance between two ends of a joint, m.
@@ -212,11 +212,11 @@ fn headline(configuration: &Configuration, outcome: &Outcome) -> Vec<HeadlineRow
 
 impl ConfigurationRow {
     fn of(configuration: &Configuration, outcome: &Outcome) -> Self {
-        let Configuration { number, name, places, labels, .. } = configuration;
+        let Configuration { number, name, shared_stages: shared, labels, .. } = configuration;
         Self {
             number: *number,
             name: name.clone(),
-            places: [places.movement, places.distances, places.maps],
+            shared_stages: [shared.movement, shared.distances, shared.maps],
             resolved: outcome.is_resolved(),
             anchor_separation: outcome.resolution.anchor_separation,
             turn: outcome.resolution.turn,
@@ -229,7 +229,7 @@ impl ConfigurationRow {
 
     /// A row of the table, with a column for each factor of the design.
     fn cells(&self, design: &Design) -> Map<String, Value> {
-        let [movement, distances, maps] = self.places;
+        let [movement, distances, maps] = self.shared_stages;
         let fixed: [Value; COLUMNS.len()] = [
             self.number.into(),
             self.name.as_str().into(),
@@ -261,7 +261,7 @@ impl ConfigurationRow {
         let (anchor_separation, turn) = (number("anchor_separation_m")?, number("turn")?);
         Some(Self {
             number: own?,
-            places: [movement?, distances?, maps?],
+            shared_stages: [movement?, distances?, maps?],
             failed: failed?,
             anchor_separation,
             turn,

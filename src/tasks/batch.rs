@@ -27,9 +27,9 @@ use crate::stages::simulate::{Resolution, Trajectory};
 /// What a task found.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct TaskOutput {
-    /// All draws, evaluated, by condition.
+    /// All posterior samples, evaluated, by condition.
     pub records: Vec<Record>,
-    /// Of each condition the draw of highest log posterior.
+    /// Of each condition the one of highest log posterior.
     pub best: Vec<Sample>,
     /// All clusterings, evaluated.
     pub baselines: Vec<BaselineRecord>,

@@ -1,4 +1,4 @@
-//! Verdicts on both sides of a range, ties, and conditions without a draw.
+//! Verdicts on both sides of a range, ties, and conditions without a sample.
 
 use super::*;
 use crate::analysis::conditions::{BaselineEstimate, Conditions};
@@ -24,7 +24,7 @@ fn record(model: Model, dimension: usize, parts: usize, ari: f64, tree_correct: 
     }
 }
 
-/// Draws of experiment 2, of which all are eligible.
+/// Posterior samples of experiment 2, of which all are eligible.
 fn moved(coordination: f64, simulation: usize, correct: bool) -> Record {
     Record { coordination, simulation, ..record(Model::DpgmmLj, 14, 5, 1.0, correct) }
 }
@@ -122,18 +122,18 @@ fn a_clear_difference_in_ari_is_seen() {
 
 #[test]
 fn the_extension_counts_the_likeliest_draw_of_each_simulation() {
-    let draw = |simulation, log_posterior, correct| Record {
+    let sample = |simulation, log_posterior, correct| Record {
         log_posterior: Some(log_posterior),
         ..moved(0.9, simulation, correct)
     };
     // Simulation 1: two of three wrong, but the likeliest is right; simulation 2 the other way round.
     let records = [
-        draw(1, -5.0, false),
-        draw(1, -1.0, true),
-        draw(1, -3.0, false),
-        draw(2, -2.0, true),
-        draw(2, -1.0, false),
-        draw(2, -9.0, true),
+        sample(1, -5.0, false),
+        sample(1, -1.0, true),
+        sample(1, -3.0, false),
+        sample(2, -2.0, true),
+        sample(2, -1.0, false),
+        sample(2, -9.0, true),
     ];
     let judged = judge_by_id("tree-accuracy", &records);
     assert_eq!((judged.reproduced.value, judged.reproduced.n), (Some(0.5), 6));
@@ -199,7 +199,7 @@ fn modes_medians_and_the_first_dimension() {
 }
 
 #[test]
-fn pooled_trees_lower_aris_and_shares_of_all_draws() {
+fn pooled_trees_lower_aris_and_shares_of_all_samples() {
     let at = |d, correct| record(Model::Dpgmm, d, 5, 1.0, correct);
     let unlike = Record { eligible: false, ..at(3, true) };
     let never = judge_by_id("baseline-tree", &[at(2, false), at(14, false), unlike]);

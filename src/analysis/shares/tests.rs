@@ -15,7 +15,7 @@ fn a_share_has_the_interval_of_its_movements_not_of_its_specifications() {
     assert!(low == 0.0 && (high - 0.2775).abs() < 0.001, "{low} to {high}");
 }
 
-/// 200 specifications of 50 movements, with two bodies of ten draws each.
+/// 200 specifications of 50 movements, with two bodies of ten posterior samples each.
 fn rates(right: impl FnMut(usize) -> [usize; 2]) -> Vec<Rate> {
     let bodies = (0..200).map(right).map(|[one, other]| vec![(one, 10), (other, 10)]);
     bodies.enumerate().map(|(at, bodies)| Rate { movement: at / 4, bodies }).collect()
@@ -31,7 +31,7 @@ fn a_multiverse_drawn_from_the_rate_looks_like_it_and_another_does_not() {
     let binomial = Binomial::new(10, 0.85).unwrap();
     let drawn = rates(|_| [0; 2].map(|_| binomial.sample(&mut rng) as usize));
     let found = inference(&drawn);
-    // Of 20 draws at 0.85 between 15 and 19 are right with probability 0.894 (binomial distribution).
+    // Of 20 posterior samples at 0.85 between 15 and 19 are right with probability 0.894 (binomial distribution).
     assert!((found.expected - 0.894).abs() < 0.03 && found.correlation < 0.05, "{found:?}");
     // At the level that all statistical tests here have.
     assert!((0.001..0.999).contains(&found.as_low), "{found:?}");
@@ -53,8 +53,8 @@ fn the_correlation_is_that_of_the_beta_distribution_however_uneven_the_draws() {
     let mut rng = stream(3, 0, "joint", 0);
     // Var of Beta(3, 1) over 0.75 × 0.25 is 1 / (3 + 1 + 1).
     let beta = Beta::new(3.0, 1.0).unwrap();
-    let mut body = |draws: u64| {
-        (Binomial::new(draws, beta.sample(&mut rng)).unwrap().sample(&mut rng) as usize, draws as usize)
+    let mut body = |samples: u64| {
+        (Binomial::new(samples, beta.sample(&mut rng)).unwrap().sample(&mut rng) as usize, samples as usize)
     };
     let rates: Vec<Rate> =
         (0..4000).map(|at| Rate { movement: at, bodies: vec![body(16), body(3), body(1)] }).collect();

@@ -191,7 +191,9 @@ impl Movement<'_> {
         let mixtures = peers::mixtures(&distances, self.settings, seen.simulation);
         let scored = |labels: &[usize], tree: &[Edge]| score(labels, tree, &truth, 0.0);
         let mixture_right = |at: usize| {
-            mixtures.as_ref().is_some_and(|draws| scored(&draws[at].labels, &draws[at].tree).tree_correct)
+            mixtures
+                .as_ref()
+                .is_some_and(|samples| scored(&samples[at].labels, &samples[at].tree).tree_correct)
         };
         let found = scored(labels, &joints.tree);
         let row = Row {
@@ -202,7 +204,7 @@ impl Movement<'_> {
             tree_of_true_parts_right: scored(&truth.labels, &tree_of_true_parts).tree_correct,
             nearest_right: scored(labels, &nearest).tree_correct,
             chow_liu_right: scored(labels, &chow_liu).tree_correct,
-            dpgmm_lj_parts: mixtures.as_ref().map(|draws| parts(&draws[0].labels)),
+            dpgmm_lj_parts: mixtures.as_ref().map(|samples| parts(&samples[0].labels)),
             dpgmm_lj_right: mixture_right(0),
             dpgmm_prim_right: mixture_right(1),
             ..nothing

@@ -49,9 +49,9 @@ pub(super) fn mixtures(distances: &Distances, settings: &Settings, simulation: u
     let scaling = ClassicalScaling::new(distances, DIMENSIONS).ok()?;
     let map = scaling.coordinates(scaling.positive().clamp(1, DIMENSIONS)).ok()?;
     let draw = |model| {
-        let draws =
+        let samples =
             infer(&map, model, &settings.schema, settings.experiment.seed, simulation, &|| ()).ok()?;
-        Some(best(&draws).clone())
+        Some(best(&samples).clone())
     };
     Some([draw(Model::DpgmmLj)?, draw(Model::Dpgmm)?])
 }

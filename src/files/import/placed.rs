@@ -1,4 +1,4 @@
-//! Links as both kinds of file give them: solids in the common frame, and turns about places and axes in it.
+//! Links as all kinds of file give them (MJCF, URDF, BVH): solids in the common frame, and turns about places and axes in it.
 
 use std::rc::Rc;
 
@@ -70,7 +70,7 @@ impl Turn {
     }
 }
 
-/// A body of MJCF or a link of URDF.
+/// A body of MJCF, a link of URDF, or a bone of a skeleton.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Link {
     /// Its name.

@@ -151,8 +151,8 @@ impl<'a> Skeleton<'a> {
         }
     }
 
-    /// The joints that have bones, each after the one that carries it. What is on a joint without bones goes to what carries
-    /// that; where there is nothing, all that is on it goes to the first of them. Messages call the scale `asked_scale`.
+    /// The joints that have bones, each after the one that carries it. A joint without bones is passed over: what it carries is carried by
+    /// the next joint with bones towards the root, or by the first joint with bones if there is none. Messages call the scale `asked_scale`.
     fn links(&mut self, asked_scale: &str) -> Result<Vec<Link>, Wrong> {
         let mut links: Vec<Link> = Vec::new();
         let mut link_of: Vec<Option<usize>> = vec![None; self.places.len()];
@@ -205,10 +205,10 @@ impl<'a> Skeleton<'a> {
         Ok(links)
     }
 
-    /// The nearest joint below another one for which this holds.
+    /// The nearest joint on the way from another one to the root for which this holds.
     fn nearest(&self, joint: usize, holds: impl Fn(usize) -> bool) -> Option<usize> {
-        let below = |at: &usize| self.movement.joints()[*at].parent;
-        std::iter::successors(below(&joint), below).find(|at| holds(*at))
+        let carrying = |at: &usize| self.movement.joints()[*at].parent;
+        std::iter::successors(carrying(&joint), carrying).find(|at| holds(*at))
     }
 
     /// The joint with bones that carries a group: the nearest one, or the first of the nearest group that has one.
@@ -221,10 +221,10 @@ impl<'a> Skeleton<'a> {
         nearest.or(self.groups[carrying].lead)
     }
 
-    /// Whether a joint with bones, or one below it that has none, travels.
+    /// Whether a joint with bones, or one on its way to the root, travels.
     fn travels_alone(&self, joint: usize) -> bool {
-        let below = |at: &usize| self.movement.joints()[*at].parent;
-        std::iter::successors(Some(joint), below).any(|at| self.travels[at])
+        let carrying = |at: &usize| self.movement.joints()[*at].parent;
+        std::iter::successors(Some(joint), carrying).any(|at| self.travels[at])
     }
 
     /// How a group turns on the joint that carries it. Several joints at one place are a ball joint together.

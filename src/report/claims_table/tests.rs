@@ -10,8 +10,8 @@ use crate::analysis::statistics::rate;
 use crate::pipeline::Record;
 use crate::stages::schema::{Model, Sampler};
 
-/// A draw of DPGMM-LJ at d = 14 and p = 0.9; `right` says whether its tree is right, if it is eligible.
-fn draw(simulation: usize, chain: usize, right: Option<bool>) -> Record {
+/// A posterior sample of DPGMM-LJ at d = 14 and p = 0.9; `right` says whether its tree is right, if it is eligible.
+fn sample(simulation: usize, chain: usize, right: Option<bool>) -> Record {
     Record {
         simulation,
         coordination: 0.9,
@@ -33,14 +33,14 @@ fn judged(records: Vec<Record>) -> Vec<Judged> {
     judge(Experiment::Exp1, &Evidence { conditions, baselines: Vec::new(), reading: Sampler::Equations })
 }
 
-/// 20 eligible draws of one simulation, of which the last is wrong.
+/// 20 eligible posterior samples of one simulation, of which the last is wrong.
 pub(crate) fn nineteen_of_twenty() -> Vec<Judged> {
-    judged((0..20).map(|chain| draw(1, chain, Some(chain < 19))).collect())
+    judged((0..20).map(|chain| sample(1, chain, Some(chain < 19))).collect())
 }
 
-/// Without a draw that is eligible.
+/// Without one that is eligible.
 pub(crate) fn no_eligible_sample() -> Vec<Judged> {
-    judged(vec![draw(1, 0, None)])
+    judged(vec![sample(1, 0, None)])
 }
 
 #[test]
@@ -82,10 +82,14 @@ fn a_row_says_how_often_single_bodies_show_the_claim() {
 }
 
 #[test]
-fn a_claim_that_counts_draws_is_followed_by_its_best_draws() {
-    // The best draw of both simulations is that of chain 0; the simulations differ in the other.
-    let records =
-        vec![draw(1, 0, Some(true)), draw(1, 1, Some(false)), draw(2, 0, Some(true)), draw(2, 1, Some(true))];
+fn a_claim_that_counts_samples_is_followed_by_its_best_samples() {
+    // The best sample of both simulations is that of chain 0; the simulations differ in the other.
+    let records = vec![
+        sample(1, 0, Some(true)),
+        sample(1, 1, Some(false)),
+        sample(2, 0, Some(true)),
+        sample(2, 1, Some(true)),
+    ];
     let rows = rows(&judged(records));
     let (all, best) = (&rows[0], &rows[1]);
     assert_eq!((all.value, all.cells.n, all.cells.simulations), (Some(0.75), 4, 2));
@@ -101,7 +105,7 @@ fn a_claim_that_counts_draws_is_followed_by_its_best_draws() {
     assert_eq!([&verdict, &published, &reproduced, &n, &accepted], ["extension", "", "100 %", "2", ""]);
     assert!(claim.ends_with("d = 14, equations interpretation: most probable sample"), "{claim}");
 
-    // Only claims that count draws have a second row.
+    // Only claims that count posterior samples have a second row.
     let of = |id| rows.iter().filter(|row| row.id == id).count();
     assert_eq!((of("number-of-parts"), of("number-of-parts-2d")), (2, 1));
 }

@@ -71,7 +71,7 @@ pub(super) fn parts(rows: &[PartsRow], mark: Option<&Mark>) -> Result<String, Pl
     })
 }
 
-/// The histogram of one d, with its title and, at `end` of the axis, the mean of the draws of highest log posterior.
+/// The histogram of one d, with its title and, at `end` of the axis, the mean of the posterior samples of highest log posterior.
 fn one_dimension(
     canvas: &Canvas,
     panel: &Panel,
@@ -91,7 +91,7 @@ fn one_dimension(
     Ok(())
 }
 
-/// The legend of [`parts`]; `extension` says whether the draws of highest log posterior are shown.
+/// The legend of [`parts`]; `extension` says whether the posterior samples of highest log posterior are shown.
 fn parts_legend(extension: bool, mark: Option<&Mark>) -> Legend {
     let mut legend = Legend::default();
     legend.add(Key::Band(BLUE, BAR), "posterior samples");

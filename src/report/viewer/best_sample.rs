@@ -1,4 +1,4 @@
-//! Read the draw of highest log posterior from the folder of the published samplers.
+//! Read the posterior sample of highest log posterior from the folder of the published samplers.
 
 use std::path::Path;
 
@@ -8,7 +8,7 @@ use super::scene::{Parts, TreeEdge};
 use crate::files::tables::read_rows;
 use crate::files::{FileError, npy};
 
-/// A row of samples.csv, of which a draw is known by its chain and sweep.
+/// A row of samples.csv, which is known by its chain and sweep.
 #[derive(Deserialize)]
 struct SampleRow {
     chain: usize,
@@ -33,25 +33,26 @@ pub(super) fn is_in(folder: &Path) -> bool {
     FILES.iter().all(|name| folder.join(name).is_file())
 }
 
-/// Parts and tree of the first draw of highest log posterior, of so many sensors.
+/// Parts and tree of the first sample of highest log posterior, of so many sensors.
 ///
 /// # Errors
 /// If a file cannot be read, or the files do not fit each other.
 pub(super) fn read(folder: &Path, sensors: usize) -> Result<Parts, FileError> {
     let [samples, assignments, trees] = FILES.map(|name| folder.join(name));
-    let draws: Vec<SampleRow> = read_rows(&samples)?;
+    let samples: Vec<SampleRow> = read_rows(&samples)?;
     let (rows, columns, labels) = npy::read_assignments(&assignments)?;
-    if (rows, columns) != (draws.len(), sensors) {
+    if (rows, columns) != (samples.len(), sensors) {
         let message = format!(
             "has {rows} samples of {columns} sensors, but samples.csv has {} samples, and there are {sensors} sensors",
-            draws.len()
+            samples.len()
         );
         return Err(FileError::new(&assignments, message));
     }
-    let better =
-        |best: usize, at: usize| if draws[at].log_posterior > draws[best].log_posterior { at } else { best };
-    let best = (0..draws.len()).fold(0, better);
-    let SampleRow { chain, sweep, .. } = draws[best];
+    let better = |best: usize, at: usize| {
+        if samples[at].log_posterior > samples[best].log_posterior { at } else { best }
+    };
+    let best = (0..samples.len()).fold(0, better);
+    let SampleRow { chain, sweep, .. } = samples[best];
     let own: Vec<Joined> = read_rows(&trees)?;
     let own = own.into_iter().filter(|row| (row.chain, row.sweep) == (chain, sweep));
     let of: Vec<Option<usize>> = labels[best * sensors..][..sensors].iter().copied().map(Some).collect();

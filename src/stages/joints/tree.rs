@@ -12,10 +12,11 @@ use crate::stages::rigid_parts::{MAX_RANK, MotionSubspace, motions_of_parts};
 use crate::stages::sense::Tactile;
 use crate::stages::tree::{Edge, prim};
 
-/// Most blocks of samples that are drawn with replacement, and the fewest samples of a block: longer than a movement lasts.
+/// Most blocks of samples that are drawn with replacement, and the fewest samples of a block: more than speeds remember. Only recordings of
+/// fewer than 200 samples have shorter ones.
 const BLOCKS: usize = 50;
 const BLOCK_SAMPLES: usize = 100;
-/// Resampled trees.
+/// Number of trees over resampled blocks.
 const RESAMPLES: usize = 400;
 
 /// A pair of parts.
@@ -25,7 +26,8 @@ pub struct Pair {
     pub part: usize,
     /// Label of the other, which is larger.
     pub other: usize,
-    /// Canonical correlation of the squared speed of a joint as both parts feel it, 0 to 1; high if they are joined.
+    /// Largest cosine found between squared speeds of one point, as both parts feel it, 0 to 1: high if a joint is there. Both are positive
+    /// semidefinite forms of the motions; the largest of all may be larger.
     pub correlation: f64,
     /// Information of a joint between them, in nats: that of its speeds, and all else that their motions share, linear and quadratic, with
     /// a weight that grows with the number of samples. The tree has the most (Chow and Liu 1968).
@@ -48,7 +50,8 @@ pub struct Joints {
 }
 
 impl Joints {
-    /// The bootstrap support of an edge of the tree, 0 to 1, given the parts.
+    /// The bootstrap support of an edge of the tree, 0 to 1, given the parts ([`Repeats`](crate::estimate::Repeats) also repeat the search for
+    /// parts). 0 for parts that are not there.
     pub fn support(&self, edge: &Edge) -> f64 {
         let (a, b) = (edge.child.min(edge.parent), edge.child.max(edge.parent));
         let pair = self.pairs.iter().find(|pair| (pair.part, pair.other) == (a, b));
@@ -65,17 +68,17 @@ impl Joints {
         let moments = Moments::new(motions, samples, blocks(samples));
         let Dependence { correlations, information } = moments.dependence();
         let tree = maximum_spanning_tree(&information);
-        let mut joined = DMatrix::<usize>::zeros(labels.len(), labels.len());
+        let mut times_joined = DMatrix::<usize>::zeros(labels.len(), labels.len());
         for edge in resampled_trees(&moments, rng).iter().flatten() {
-            joined[(edge.child.min(edge.parent), edge.child.max(edge.parent))] += 1;
+            times_joined[(edge.child.min(edge.parent), edge.child.max(edge.parent))] += 1;
         }
         let pairs = (0..labels.len()).flat_map(|a| (a + 1..labels.len()).map(move |b| (a, b)));
         let is_edge = |a: usize, b: usize| {
             tree.iter().any(|edge| [(a, b), (b, a)].contains(&(edge.child, edge.parent)))
         };
-        // An edge between parts of no information is in a tree by its place in the list alone.
+        // Parts without information are a tie with all others: the order of parts alone joins them. So their support is 0.
         let support = |a: usize, b: usize| {
-            if information[(a, b)] > 0.0 { joined[(a, b)] as f64 / RESAMPLES as f64 } else { 0.0 }
+            if information[(a, b)] > 0.0 { times_joined[(a, b)] as f64 / RESAMPLES as f64 } else { 0.0 }
         };
         let pair = |(a, b): (usize, usize)| Pair {
             part: labels[a],
@@ -113,7 +116,7 @@ pub fn joints(
     Joints::of_motions(&parts, &motions, tactile.samples, rng)
 }
 
-/// The tree of [`joints`] without its support, which takes longest of a short recording.
+/// The tree of [`joints`] without its support: of a short recording, the bootstrap takes most of the time.
 pub(crate) fn joint_tree(tactile: &Tactile, signed: bool, labels: &[Option<usize>]) -> Vec<Edge> {
     let (parts, motions) = parts_and_motions(tactile, signed, labels, None);
     tree_of_motions(&parts, &motions, tactile.samples)

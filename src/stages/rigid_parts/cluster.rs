@@ -28,11 +28,11 @@ const WEIGHTS: [f64; 2] = [3e-3, 3e-4];
 /// Momentum of these iterations: the least and the largest, and its factors while the residual falls and when it grew.
 const MOMENTUM: [f64; 2] = [0.5, 0.98];
 const PACE: [f64; 2] = [1.1, 0.5];
-/// The least tolerance: what the iterations leave.
-pub(super) const LEAST_TOLERANCE: f64 = 3e-4;
-/// Residual variance, in units of the tolerance, up to which more iterations may explain a cluster. A sensor that is in none may leave as
+/// The least tolerance of the search: what the iterations leave. A separation, which iterates longer, goes below.
+pub(super) const SEARCH_TOLERANCE: f64 = 3e-4;
+/// Residual variance, in units of the tolerance, up to which more iterations may explain a cluster. A sensor that is in no cluster may leave as
 /// much, which with noise is more than any residual.
-pub(super) const LEFT: f64 = 30.0;
+pub(super) const MAX_OPEN: f64 = 30.0;
 /// Residual variance at which more iterations say nothing new.
 pub(super) const ROUNDING: f64 = 1e-11;
 /// Degrees of freedom of its residual that a part must have per sample. With fewer, any sensors fit.
@@ -173,7 +173,7 @@ impl Cluster {
         if !self.is_learned || self.variance() > felt.tolerance {
             self.learn(felt, felt.iterations[1], WEIGHTS[1]);
             // Beyond, it is of several parts.
-            let most = LEFT * felt.tolerance.max(LEAST_TOLERANCE);
+            let most = MAX_OPEN * felt.tolerance.max(SEARCH_TOLERANCE);
             if self.variance() > felt.tolerance && self.variance() <= most {
                 self.leave_minimum(felt);
             }
@@ -207,7 +207,7 @@ impl Cluster {
     /// Whether two clusters have components in common: their union has fewer than both. What is below the least tolerance may be an error
     /// of the model, and is no component.
     pub(super) fn have_common(a: &Self, b: &Self, union: &Self, tolerance: f64) -> bool {
-        let present = |own: &Self| own.present(tolerance.max(LEAST_TOLERANCE));
+        let present = |own: &Self| own.present(tolerance.max(SEARCH_TOLERANCE));
         present(union) < present(a) + present(b)
     }
 
@@ -324,7 +324,7 @@ impl Cluster {
             let mut next = loadings.clone();
             als.update_loadings(next.as_mut(), motion);
             let [residual, freedom] = plain.residual(next.as_ref(), motion);
-            if tolerance < LEAST_TOLERANCE && residual <= ROUNDING * freedom {
+            if tolerance < SEARCH_TOLERANCE && residual <= ROUNDING * freedom {
                 *loadings = next;
                 is_whole = false;
                 break;
@@ -379,5 +379,5 @@ fn per_root([sum, count]: [f64; 2]) -> f64 {
 /// What a root that is not felt tells of w, as a share of what one tells that is felt: all where the tolerance is the least or lower,
 /// since it is completed as exactly, and next to nothing with noise.
 fn told_by_censored(tolerance: f64) -> f64 {
-    f64::min(1.0, LEAST_TOLERANCE / tolerance).powi(2)
+    f64::min(1.0, SEARCH_TOLERANCE / tolerance).powi(2)
 }

@@ -7,7 +7,7 @@ use faer::Mat;
 use kodama::Method;
 use rayon::prelude::*;
 
-use super::cluster::{Cluster, Felt, LEAST_TOLERANCE, LEFT};
+use super::cluster::{Cluster, Felt, MAX_OPEN, SEARCH_TOLERANCE};
 use super::medians::median;
 use super::weights::weigh;
 use crate::numerics::linkage::largest_clusters;
@@ -29,7 +29,7 @@ pub(super) const EXPLAINED: f64 = 5.0;
 /// The same of a seed cluster.
 const MIXED: f64 = 10.0;
 /// The tolerance, the residual variance that is encoded as noise is: the least and the largest.
-const TOLERANCE: [f64; 2] = [LEAST_TOLERANCE, 5e-2];
+const TOLERANCE: [f64; 2] = [SEARCH_TOLERANCE, 5e-2];
 /// Fewest sensors of a cluster.
 pub(super) const MIN_CLUSTER: usize = 4;
 /// Most iterations in which sensors are assigned, and of merging and assigning.
@@ -63,13 +63,13 @@ impl Search {
     /// The clusters, each of one motion. Sensors that no motion explains are in none.
     pub(super) fn clusters(&mut self) -> Vec<Cluster> {
         let seeds = self.seed_clusters();
-        let mut clusters = self.settled(seeds);
+        let mut clusters = self.converged(seeds);
         if let Some(separated) = self.separated(&clusters) {
             return separated;
         }
         self.rest_takes_part = true;
         if let Some(changed) = self.changed_by_rest(&clusters) {
-            clusters = self.settled(changed);
+            clusters = self.converged(changed);
         }
         clusters.par_iter_mut().for_each(|own| own.learn_with_least_rank(&self.felt));
         clusters
@@ -85,7 +85,7 @@ impl Search {
     }
 
     /// Alternates moves of sensors with regrouping of faces, as long as anything changes.
-    fn settled(&mut self, clusters: Vec<Cluster>) -> Vec<Cluster> {
+    fn converged(&mut self, clusters: Vec<Cluster>) -> Vec<Cluster> {
         let mut clusters = self.alternated(clusters);
         for _ in 0..MAX_REGROUPINGS {
             let Some(parts) = self.regrouped(&clusters) else { break };
@@ -123,7 +123,7 @@ impl Search {
 
     /// The residual variance that is still explained, of a sensor that is in no cluster.
     pub(super) fn most_residual(&self) -> f64 {
-        LEFT * self.felt.tolerance
+        MAX_OPEN * self.felt.tolerance
     }
 
     /// All sensors as one cluster.
@@ -138,7 +138,7 @@ impl Search {
 
     /// The sensors that are in none of these clusters.
     pub(super) fn in_none(&self, clusters: &[Cluster]) -> Vec<usize> {
-        left(clusters, &self.every())
+        unclustered(clusters, &self.every())
     }
 
     /// The seed clusters that one motion explains.
@@ -148,7 +148,8 @@ impl Search {
         self.unmixed(&seeds)
     }
 
-    /// Sets the tolerance to what one motion leaves of most of these clusters, and weighs the samples by what it leaves there.
+    /// Sets the tolerance to the median residual variance of these seed clusters, weighs the samples by what the clusters leave there, and
+    /// sets it anew.
     pub(super) fn calibrate(&mut self, clusters: &[Vec<usize>]) {
         self.set_tolerance(clusters);
         let found = self.unmixed(clusters);
@@ -156,7 +157,7 @@ impl Search {
         self.set_tolerance(clusters);
     }
 
-    /// Sets the tolerance to the residual variance that one motion leaves of most of these seed clusters, within bounds.
+    /// Sets the tolerance to the median residual variance of these seed clusters, within bounds.
     fn set_tolerance(&mut self, seeds: &[Vec<usize>]) {
         self.felt.tolerance = TOLERANCE[0];
         let variance = |own: &Vec<usize>| Cluster::widest(&self.felt, own.clone()).variance();
@@ -199,8 +200,8 @@ impl Search {
                 |(a, b)| ((a, b), self.may_be_one(Cluster::union(&self.felt, &clusters[&a], &clusters[&b])));
             unions.extend(new.into_par_iter().map(union).collect::<Vec<_>>());
             let mut best = best_merge(&clusters, &unions, &pairs);
-            if best.is_none() && self.felt.tolerance >= LEAST_TOLERANCE {
-                // More iterations may show what the first ones leave open. Below, there were many.
+            if best.is_none() && self.felt.tolerance >= SEARCH_TOLERANCE {
+                // More iterations may show what the first ones leave open. A separation, whose tolerance is lower, begins with many.
                 let open = unions.par_iter_mut().filter(|(pair, _)| pairs.contains(pair));
                 open.filter_map(|(_, union)| union.as_mut()).for_each(|union| union.learn_longer(&self.felt));
                 best = best_merge(&clusters, &unions, &pairs);
@@ -239,10 +240,11 @@ impl Search {
         cluster.variance() <= EXPLAINED * self.felt.tolerance || cluster.freedom <= 0.5
     }
 
-    /// A cluster, unless its first iterations leave so much that more would not explain it. Below the least tolerance, only more tell.
+    /// A cluster, unless its first iterations leave so much that more would not explain it. In a separation, whose tolerance is lower, only
+    /// more iterations can tell, so every cluster stays.
     pub(super) fn may_be_one(&self, cluster: Cluster) -> Option<Cluster> {
-        let is_near = cluster.variance() <= LEFT * self.felt.tolerance || self.explains(&cluster);
-        (is_near || self.felt.tolerance < LEAST_TOLERANCE).then_some(cluster)
+        let is_near = cluster.variance() <= MAX_OPEN * self.felt.tolerance || self.explains(&cluster);
+        (is_near || self.felt.tolerance < SEARCH_TOLERANCE).then_some(cluster)
     }
 
     /// Each cluster with those of highest affinity, on average.
@@ -280,7 +282,9 @@ impl Search {
         order.into_iter().map(|(_, name)| name).collect()
     }
 
-    /// Assigns each of these sensors to the cluster that leaves it the smallest residual, if that explains it.
+    /// Assigns each of these sensors to the cluster that leaves it the smallest residual, if that explains it; else it stays where it is.
+    /// Clusters keep none but these sensors, and those with fewer than [`MIN_CLUSTER`] vanish. What the clusters complete of the roots is kept
+    /// in `felt`.
     pub(super) fn assigned(&mut self, mut clusters: Vec<Cluster>, sensors: &[usize]) -> Vec<Cluster> {
         let tolerance = self.felt.tolerance;
         for _ in 0..MAX_ASSIGNMENTS {
@@ -293,7 +297,7 @@ impl Search {
                 .collect();
             let alone: BTreeSet<usize> = clusters.iter().flat_map(Cluster::alone).collect();
             for &sensor in sensors {
-                // What spans a component alone must be explained by another cluster to leave, and by none to stay.
+                // A sensor that spans a component alone has no residual in its own cluster. So it moves if another cluster explains it.
                 let judged = |(at, of): (usize, &Vec<f64>)| {
                     let is_own = own.get(&sensor) == Some(&at);
                     if is_own && alone.contains(&sensor) { f64::MAX } else { of[sensor] }
@@ -334,7 +338,7 @@ impl Search {
 
     /// Description length of some sensors: of these clusters, and of each sensor that is in none.
     pub(super) fn length_of(&self, clusters: &[Cluster], sensors: &[usize]) -> f64 {
-        let alone = left(clusters, sensors).into_iter().map(|sensor| vec![sensor]);
+        let alone = unclustered(clusters, sensors).into_iter().map(|sensor| vec![sensor]);
         let all: Vec<Vec<usize>> = clusters.iter().map(|own| own.sensors.clone()).chain(alone).collect();
         let lengths: Vec<f64> = all.into_par_iter().map(|own| self.learned(own).description_length).collect();
         lengths.iter().sum()
@@ -342,7 +346,7 @@ impl Search {
 }
 
 /// Those of some sensors that are in none of these clusters.
-fn left(clusters: &[Cluster], sensors: &[usize]) -> Vec<usize> {
+fn unclustered(clusters: &[Cluster], sensors: &[usize]) -> Vec<usize> {
     let taken: BTreeSet<usize> = clusters.iter().flat_map(|own| own.sensors.iter().copied()).collect();
     sensors.iter().copied().filter(|sensor| !taken.contains(sensor)).collect()
 }

@@ -3,7 +3,7 @@
 use faer::Mat;
 use rand::RngExt;
 
-use super::cluster::{Felt, ITERATIONS, LEAST_TOLERANCE};
+use super::cluster::{Felt, ITERATIONS, SEARCH_TOLERANCE};
 use super::completion::Completion;
 use super::memory::Memory;
 use super::roots::{Roots, product};
@@ -26,7 +26,7 @@ pub(super) fn felt_of(velocities: &Mat<f64>) -> (Felt, Mat<f64>) {
     let completion = Completion::new(&roots);
     let (completed, iterations) = (completion.velocities, ITERATIONS);
     let memory = Memory::default();
-    let felt = Felt { roots, completed, sizes, tolerance: LEAST_TOLERANCE, iterations, memory };
+    let felt = Felt { roots, completed, sizes, tolerance: SEARCH_TOLERANCE, iterations, memory };
     (felt, completion.affinities)
 }
 

@@ -27,14 +27,14 @@ pub enum InferenceError {
         /// d.
         dims: usize,
     },
-    /// Draws too large for the memory.
+    /// Posterior samples too large for the memory.
     #[error(
-        "{draws} posterior samples of {points} points are more than 1 billion labels; keep fewer (schema.chains, schema.sweeps, \
+        "{samples} posterior samples of {points} points are more than 1 billion labels; keep fewer (schema.chains, schema.sweeps, \
          schema.keep)"
     )]
     TooManyLabels {
-        /// Draws that are kept.
-        draws: usize,
+        /// Posterior samples that are kept.
+        samples: usize,
         /// n.
         points: usize,
     },

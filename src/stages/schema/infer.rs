@@ -40,7 +40,7 @@ pub fn infer(
         .map(|chain| {
             let mut rng = stream(seed, simulation, &stage, chain);
             let settings = &Schema { start: settings.start.of_chain(chain), ..settings.clone() };
-            let draws = if let Some(target) = &target {
+            let samples = if let Some(target) = &target {
                 let labels = start_labels(&points, settings, &mut rng);
                 let state = SplitMerge::start(target, &labels, &mut rng)?;
                 run_chain(chain, state, settings, &mut rng)?
@@ -49,7 +49,7 @@ pub fn infer(
                 run_chain(chain, state, settings, &mut rng)?
             };
             tick();
-            Ok(draws)
+            Ok(samples)
         })
         .collect();
     Ok(chains?.into_iter().flatten().collect())
@@ -94,7 +94,7 @@ trait State {
     fn sweep(&mut self, rng: &mut Stream) -> Result<(), InferenceError>;
 
     /// The state after a sweep, as a posterior sample of a chain.
-    fn draw(&self, chain: usize, sweep: usize, rng: &mut Stream) -> Result<Sample, InferenceError>;
+    fn sample(&self, chain: usize, sweep: usize, rng: &mut Stream) -> Result<Sample, InferenceError>;
 }
 
 impl State for Chain<'_> {
@@ -102,7 +102,7 @@ impl State for Chain<'_> {
         Chain::sweep(self, rng)
     }
 
-    fn draw(&self, chain: usize, sweep: usize, _: &mut Stream) -> Result<Sample, InferenceError> {
+    fn sample(&self, chain: usize, sweep: usize, _: &mut Stream) -> Result<Sample, InferenceError> {
         Ok(Sample {
             chain,
             sweep,
@@ -119,7 +119,7 @@ impl State for SplitMerge<'_> {
         Ok(SplitMerge::sweep(self, rng)?)
     }
 
-    fn draw(&self, chain: usize, sweep: usize, rng: &mut Stream) -> Result<Sample, InferenceError> {
+    fn sample(&self, chain: usize, sweep: usize, rng: &mut Stream) -> Result<Sample, InferenceError> {
         Ok(Sample {
             chain,
             sweep,
@@ -133,7 +133,8 @@ impl State for SplitMerge<'_> {
 
 /// Refuses a map or settings that would take too much memory, before anything of that size is made.
 fn check_size(map: &BodyMap, settings: &Schema) -> Result<(), InferenceError> {
-    let (components, dims, draws, count) = (settings.components, map.dims, settings.draws(), map.points());
+    let (components, dims, samples, count) =
+        (settings.components, map.dims, settings.samples(), map.points());
     // n points span n − 1 dimensions.
     if count <= dims {
         return Err(InferenceError::Flat { points: count, dims });
@@ -141,8 +142,8 @@ fn check_size(map: &BodyMap, settings: &Schema) -> Result<(), InferenceError> {
     if !matrices_fit(components, dims) {
         return Err(InferenceError::TooManyNumbers { components, dims });
     }
-    if draws.saturating_mul(count) > MAX_LABELS {
-        return Err(InferenceError::TooManyLabels { draws, points: count });
+    if samples.saturating_mul(count) > MAX_LABELS {
+        return Err(InferenceError::TooManyLabels { samples, points: count });
     }
     Ok(())
 }
@@ -154,7 +155,7 @@ fn run_chain(
     settings: &Schema,
     rng: &mut Stream,
 ) -> Result<Vec<Sample>, InferenceError> {
-    let mut draws = Vec::new();
+    let mut samples = Vec::new();
     for sweep in 1..=settings.sweeps {
         interrupt::check();
         state.sweep(rng)?;
@@ -163,8 +164,8 @@ fn run_chain(
             Keep::All => sweep > settings.burn_in,
         };
         if keep {
-            draws.push(state.draw(chain, sweep, rng)?);
+            samples.push(state.sample(chain, sweep, rng)?);
         }
     }
-    Ok(draws)
+    Ok(samples)
 }

@@ -26,18 +26,18 @@ pub struct Sample {
 /// The posterior sample of highest log p(x, z), in which joints do not count; the first of equal ones.
 ///
 /// # Panics
-/// If `draws` is empty.
-pub fn best(draws: &[Sample]) -> &Sample {
-    draws
+/// If `samples` is empty.
+pub fn best(samples: &[Sample]) -> &Sample {
+    samples
         .iter()
         .reduce(|kept, next| if next.log_posterior > kept.log_posterior { next } else { kept })
-        .expect("draws must not be empty")
+        .expect("samples must not be empty")
 }
 
 /// One sample for each chain, with all sensors in one component: the answer where no sensor differs from another, so that
 /// there is no body map to infer from.
 pub fn one_part(sensors: usize, settings: &Schema) -> Vec<Sample> {
-    let draw = |chain| Sample {
+    let sample = |chain| Sample {
         chain,
         sweep: settings.sweeps,
         labels: vec![0; sensors],
@@ -45,5 +45,5 @@ pub fn one_part(sensors: usize, settings: &Schema) -> Vec<Sample> {
         joints: Vec::new(),
         log_posterior: None,
     };
-    (0..settings.chains).map(draw).collect()
+    (0..settings.chains).map(sample).collect()
 }

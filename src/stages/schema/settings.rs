@@ -157,7 +157,7 @@ impl Schema {
     }
 
     /// Number of posterior samples that are kept.
-    pub fn draws(&self) -> usize {
+    pub fn samples(&self) -> usize {
         match self.keep {
             Keep::Last => self.chains,
             Keep::All => self.chains.saturating_mul(self.sweeps.saturating_sub(self.burn_in)),
@@ -183,11 +183,11 @@ impl Schema {
             check("schema.burn_in", self.burn_in, self.burn_in < self.sweeps, "below schema.sweeps")?;
         }
         self.authors.check()?;
-        let draws = self.draws();
+        let samples = self.samples();
         check(
             "schema.chains * (schema.sweeps - schema.burn_in)",
-            draws,
-            draws <= 1_000_000 && draws * sensors <= MAX_LABELS,
+            samples,
+            samples <= 1_000_000 && samples * sensors <= MAX_LABELS,
             "at most 1000000 samples where all are kept, and at most 1000000000 labels with all sensors",
         )
     }

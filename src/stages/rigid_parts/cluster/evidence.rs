@@ -7,7 +7,7 @@
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
-use super::{Cluster, LEAST_TOLERANCE};
+use super::{Cluster, SEARCH_TOLERANCE};
 
 /// Most iterations in which c is found; each updates which samples are informative.
 const ITERATIONS: usize = 30;
@@ -41,7 +41,7 @@ impl Cluster {
             motion: DMatrix::from_fn(k, self.motion.nrows(), |at, t| self.motion[(t, at)]),
             log_determinant: -log_determinant(&factor),
             precision: factor.inverse(),
-            variance: size * self.variance().max(LEAST_TOLERANCE),
+            variance: size * self.variance().max(SEARCH_TOLERANCE),
         })
     }
 }

@@ -3,7 +3,7 @@
 use faer::Mat;
 use rand::RngExt;
 
-use super::super::cluster::LEAST_TOLERANCE;
+use super::super::cluster::SEARCH_TOLERANCE;
 use super::super::medians::median;
 use super::super::roots::product;
 use super::super::testing::felt_of;
@@ -36,8 +36,8 @@ fn samples_with_an_error_weigh_less() {
         |wrong: bool| median((0..600).filter(|t| (t % 10 == 0) == wrong).map(|t| felt.sizes[t]).collect());
     assert!(typical(true) > 3.0 && typical(false) < 1.3, "{} and {}", typical(true), typical(false));
     let after = learned_longer(&felt);
-    assert!(before.variance() > 3.0 * LEAST_TOLERANCE, "{}", before.variance());
-    assert!(after.variance() < 0.5 * LEAST_TOLERANCE, "{}", after.variance());
+    assert!(before.variance() > 3.0 * SEARCH_TOLERANCE, "{}", before.variance());
+    assert!(after.variance() < 0.5 * SEARCH_TOLERANCE, "{}", after.variance());
     let root = felt.roots.values[(10, 0)] * felt.sizes[10];
     assert!((root - self::felt(0.3).roots.values[(10, 0)]).abs() < 1e-12, "the true size is kept");
 }
