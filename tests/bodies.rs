@@ -63,7 +63,7 @@ fn noise_costs_fewer_parts_if_it_counts_as_no_touch() {
     (settings.motion.coordination, settings.motion.epoch) = (0.5, 1000);
     (settings.physics.duration, settings.physics.step) = (1000.0, 0.005);
     let Settings { motion, physics, sense: tactile_sense, quantise, .. } = &settings;
-    let NamedBody { agent, .. } = read_body(&repository("bodies/star.toml")).unwrap();
+    let NamedBody { agent, .. } = read_body(&repository("bodies/chain-3.toml")).unwrap();
     let rng = &mut stream(11, 1, "motion", 0);
     let trajectory = simulate(&agent, motion, physics, tactile_sense.interval, rng, &|| ()).unwrap();
     let mut tactile = sense(&agent, &trajectory, tactile_sense);
@@ -114,6 +114,10 @@ fn the_study_of_bodies_repeats_itself_and_names_mistakes() {
     let page = folder.text("again/bodies.md");
     assert!(page.contains("of each at each p: 1;") && page.contains("| 0.5 | 500 | 0.1 | 1 |"), "{page}");
     assert!(folder.text("again/design.toml").contains("movements = 1\n"));
+    // A shard of what is left changes no table.
+    study("bodies.toml --out again --shard 2/2");
+    assert_eq!(folder.text("again/bodies.md"), page);
+    assert_eq!(fs::read_dir(folder.at("again/checkpoints")).unwrap().count(), 3);
     let told = study("bodies.toml --out again");
     assert!(told.contains("continuing from what an earlier run finished"), "{told}");
     // Page and picture are made from the tables alone.

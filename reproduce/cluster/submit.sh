@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Submits a study to Slurm: a job array with a shard for each task, and a job that gathers them. All tasks write into
+# Submits a study, or the study of bodies, to Slurm: a job array with a shard for each task, and a job that gathers them. All tasks write into
 # one folder, which all nodes must see. Submit again what failed: finished movements are not run again.
 set -euo pipefail
 here=$(CDPATH= cd -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")" && pwd)
@@ -12,6 +12,7 @@ Usage: reproduce/cluster/submit.sh --shards N --out DIR [--design FILE] [--progr
   --shards N      tasks of the job array; at most as many as the study has movements
   --out DIR       folder that all nodes see
   --design FILE   design, instead of reproduce/multiverse.toml
+  --bodies        FILE is a design of the study of bodies, such as reproduce/bodies.toml
   --program FILE  bodyschema, instead of target/release/bodyschema; a command line in a container works, too:
                   --program 'apptainer exec bodyschema.sif bodyschema'
   -- OPTIONS      for sbatch, such as --partition, --account or --time, for both jobs
@@ -20,13 +21,14 @@ Each task asks for 2 CPUs, 2 GB and 12 hours unless OPTIONS say otherwise.
 EOF
 }
 
-shards='' out='' design=$root/reproduce/multiverse.toml program=$root/target/release/bodyschema
+shards='' out='' subcommand=study design=$root/reproduce/multiverse.toml program=$root/target/release/bodyschema
 while [ $# -gt 0 ]; do
     case $1 in
         --shards | --out | --design | --program)
             [ $# -ge 2 ] || { echo "submit.sh: $1 needs a value" >&2; exit 2; }
             declare "${1#--}=$2"
             shift 2 ;;
+        --bodies) subcommand=bodies; shift ;;
         --) shift; break ;;
         -h | --help) usage; exit 0 ;;
         *) echo "submit.sh: $1 is not an option; see --help" >&2; exit 2 ;;
@@ -39,7 +41,7 @@ command -v sbatch >/dev/null || { echo "submit.sh: there is no sbatch here; log 
 
 mkdir -p -- "$out/logs"
 out=$(readlink -f -- "$out")
-export BODYSCHEMA=$program DESIGN=$(readlink -f -- "$design") OUT=$out SHARDS=$shards
+export BODYSCHEMA=$program SUBCOMMAND=$subcommand DESIGN=$(readlink -f -- "$design") OUT=$out SHARDS=$shards
 common=(--parsable --export=ALL --time=12:00:00 --mem=2G)
 array=$(sbatch "${common[@]}" --cpus-per-task=2 --array="0-$((shards - 1))" --output="$out/logs/shard-%a.log" "$@" \
     "$here/shard.sbatch")

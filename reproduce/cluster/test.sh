@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Whether the job array does what it should: starts a Slurm of one node on this machine, submits a small study as an
-# array, kills and requeues a task, and compares the gathered bytes with those of a run without Slurm. Needs root, and Debian
-# or Ubuntu; installs slurm-wlm and munge. Takes some three minutes.
+# array, kills and requeues a task, and compares the gathered bytes with those of a run without Slurm. Then the same, without a
+# kill, with a small study of bodies. Needs root, and Debian or Ubuntu; installs slurm-wlm and munge. Takes some three minutes.
 set -euo pipefail
 here=$(CDPATH= cd -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")" && pwd)
 root=$(CDPATH= cd -- "$here/../.." && pwd)
@@ -89,11 +89,21 @@ for _ in $(seq 60); do
 done
 requeued=$(squeue -h -r -t RUNNING -n study -o %i | head -n 1)
 [ -n "$requeued" ] && scontrol requeue "$requeued" && echo "killed and requeued $requeued"
-for _ in $(seq 300); do
-    [ -n "$(squeue -h)" ] || break
-    sleep 1
-done
+wait_for_all() {
+    for _ in $(seq 300); do
+        [ -n "$(squeue -h)" ] || break
+        sleep 1
+    done
+}
+wait_for_all
 [ -f "$work/slurm/study.md" ] || { echo "test.sh: the shards of job $array were not gathered" >&2; exit 1; }
 [ -n "$requeued" ] || { echo "test.sh: no task was running, so none was killed" >&2; exit 1; }
 diff -r --exclude=checkpoints --exclude=logs --exclude=ro-crate-metadata.json "$work/alone" "$work/slurm"
 echo "a run under Slurm, with a task killed and requeued, gave the same bytes as one without"
+
+design=$here/small-bodies.toml
+"$program" bodies --design "$design" --out "$work/bodies"
+"$here/submit.sh" --shards 2 --bodies --design "$design" --program "$program" --out "$work/slurm-bodies" -- --cpus-per-task=1 --mem=500M
+wait_for_all
+diff -r --exclude=checkpoints --exclude=logs --exclude=ro-crate-metadata.json "$work/bodies" "$work/slurm-bodies"
+echo "so did a study of bodies"

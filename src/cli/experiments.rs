@@ -19,6 +19,7 @@ use crate::report::headline::Headline;
 use crate::settings::read_toml;
 use crate::stages::schema::Sampler;
 use crate::tasks::seeds::used_before;
+use crate::tasks::shard::Shard;
 
 /// Runs an experiment of the paper and judges the paper's claims.
 ///
@@ -120,7 +121,8 @@ impl Reproduce {
 ///
 /// Writes into DIR: recordings.csv (a row for each recording), edges.csv (a row for each edge of each estimated tree) and
 /// bodies.md (the report). A study that was stopped continues; with more movements, it reuses those in checkpoints/. Each
-/// thread holds one simulated movement in memory: 0.4 GB for 840 sensors and 100,000 samples.
+/// thread holds one simulated movement in memory: 0.4 GB for 840 sensors and 100,000 samples. On several machines: run each shard
+/// into one shared folder, then the study without --shard, which only writes the tables.
 #[derive(Args)]
 pub(super) struct Bodies {
     /// Design file, such as reproduce/bodies.toml; paths of body files are relative to its folder
@@ -129,6 +131,9 @@ pub(super) struct Bodies {
     /// Simulated movements of each body at each p, instead of the number in the design
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     movements: Option<u32>,
+    /// Run only the I-th of N parts of the work, and write no tables
+    #[arg(long, value_name = "I/N")]
+    shard: Option<Shard>,
     #[command(flatten)]
     threads: Threads,
     /// Folder to write to
@@ -147,11 +152,17 @@ impl Bodies {
             text = toml::to_string(&design)?;
         }
         prepare_folder(&self.out)?;
-        bodies::study(&design, &text, &self.design, &self.out)?;
+        bodies::study(&design, &text, &self.design, self.shard, &self.out)?;
         if let Some(used) = used_before(design.seed..=design.seed) {
             say(used)?;
         }
-        say(format!("All files are in {}; open bodies.md there.", self.out.display()))?;
+        let out = self.out.display();
+        say(match self.shard {
+            Some(_) => {
+                format!("This shard is finished, in {out}. After all shards, run the study without --shard.")
+            }
+            None => format!("All files are in {out}; open bodies.md there."),
+        })?;
         Ok(ExitCode::SUCCESS)
     }
 }

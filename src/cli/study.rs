@@ -9,8 +9,9 @@ use clap::Args;
 use super::options::Threads;
 use super::output::say;
 use crate::files::prepare_folder;
-use crate::study::{self, Design, DesignText, Selection, Shard, plan};
+use crate::study::{self, Design, DesignText, Selection, plan};
 use crate::tasks::seeds::used_before;
+use crate::tasks::shard::Shard;
 
 /// Runs many configurations of the experiments on shared simulations, and says by which the paper's claims hold.
 ///

@@ -17,12 +17,10 @@ mod page;
 mod plan;
 mod ranking;
 mod results;
-mod shard;
 mod work;
 
 pub(crate) use self::design::Design;
 pub(crate) use self::extends::DesignText;
 pub(crate) use self::gather::{gather, is_finished, is_study, join, redraw};
 pub(crate) use self::plan::{Selection, plan};
-pub(crate) use self::shard::Shard;
 pub(crate) use self::work::run;

@@ -14,7 +14,6 @@ use toml::Table;
 
 use super::outcome::{Failure, Outcome};
 use super::plan::Configuration;
-use super::shard::Shard;
 use crate::files::checkpoint::Checkpoints;
 use crate::files::manifest::Manifest;
 use crate::files::{FileError, read_text, sha256_of_text, write_same_text};
@@ -27,6 +26,7 @@ use crate::tasks::batch::{Batch, Outcome as TaskOutcome, TaskOutput};
 use crate::tasks::cache::Keys;
 use crate::tasks::error::ExperimentError;
 use crate::tasks::progress::progress;
+use crate::tasks::shard::Shard;
 use crate::tasks::task::{Keep, Task, by_movement};
 
 /// Key of the checkpoints. The names of tasks already hash the settings that their results depend on.

@@ -8,4 +8,5 @@ pub(crate) mod error;
 mod prefetch;
 pub(crate) mod progress;
 pub(crate) mod seeds;
+pub(crate) mod shard;
 pub(crate) mod task;

@@ -16,6 +16,7 @@ use crate::files::{FileError, prepare_folder, read_text, write_text};
 use crate::report::plot;
 use crate::tasks::error::ExperimentError;
 use crate::tasks::progress::progress;
+use crate::tasks::shard::Shard;
 
 const ROWS: &str = "recordings.csv";
 const EDGES: &str = "edges.csv";
@@ -26,11 +27,17 @@ const PAGE: &str = "bodies.md";
 /// figures/bodies.svg.
 ///
 /// A study that was interrupted goes on from the movements that it finished, and so does one of more movements: what each gave
-/// stays in the folder checkpoints.
+/// stays in the folder checkpoints. A shard writes nothing else: whoever then runs the whole study goes on from all of them.
 ///
 /// # Errors
 /// If a body or the settings cannot be used, a movement is unstable, or a file cannot be written.
-pub(crate) fn study(design: &Design, text: &str, path: &Path, out: &Path) -> Result<(), ExperimentError> {
+pub(crate) fn study(
+    design: &Design,
+    text: &str,
+    path: &Path,
+    shard: Option<Shard>,
+    out: &Path,
+) -> Result<(), ExperimentError> {
     let mut folder = ResultFolder::new(out);
     let bodies = design.read_bodies(path)?;
     let settings = design
@@ -48,7 +55,9 @@ pub(crate) fn study(design: &Design, text: &str, path: &Path, out: &Path) -> Res
     let hashes: Vec<&str> = bodies.iter().map(|body| body.sha256.as_str()).collect();
     let checkpoints = Checkpoints::new(out, &(Design { movements: 0, ..design.clone() }, hashes));
     let each = design.recordings.len() as u64 + 1;
-    let count = bodies.len() * settings.len() * design.movements;
+    let of_shard = |place: &usize| shard.unwrap_or(Shard::WHOLE).has(*place);
+    let each_time = bodies.len() * settings.len();
+    let count = (0..each_time * design.movements).filter(of_shard).count();
     let bar = progress(each * count as u64, format!("{count} simulations"));
     let failed = AtomicBool::new(false);
     let run = |movement: &Movement| -> Result<Found, ExperimentError> {
@@ -72,11 +81,16 @@ pub(crate) fn study(design: &Design, text: &str, path: &Path, out: &Path) -> Res
             let movement = move |(way, settings)| Movement { design, body, of_body, way, settings, number };
             settings.iter().map(move |(way, settings)| movement((*way, settings)))
         };
-        let movements: Vec<Movement> = bodies.iter().enumerate().flat_map(of_body).collect();
-        let results: Vec<Found> = movements.par_iter().map(run).collect::<Result<_, _>>()?;
-        found.extend(results.into_iter().enumerate());
+        let movements = bodies.iter().enumerate().flat_map(of_body).enumerate();
+        let own = movements.filter(|(at, _)| of_shard(&((number - 1) * each_time + at)));
+        let own: Vec<(usize, Movement)> = own.collect();
+        let results = own.par_iter().map(|(at, movement)| Ok((*at, run(movement)?)));
+        found.extend(results.collect::<Result<Vec<_>, ExperimentError>>()?);
     }
     bar.finish_and_clear();
+    if shard.is_some() {
+        return Ok(());
+    }
     // By body, then by kind and p, then by movement.
     found.sort_by_key(|(place, _)| *place);
     let (mut rows, mut edges) = (Vec::new(), Vec::new());
