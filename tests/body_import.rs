@@ -1,7 +1,9 @@
 //! `bodyschema body import` as a user meets it: descriptions of both kinds, and mistakes.
 
+use std::f32::consts::{PI, TAU};
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 use bodyschema::files::body::{NamedBody, read_body};
 use bodyschema::stages::agent::{Freedom, Shape};
@@ -111,6 +113,40 @@ fn volume(shape: &Shape) -> f64 {
         Shape::Box { sides } => sides.iter().product(),
         _ => panic!("{shape:?} is no box"),
     }
+}
+
+/// A mesh of 10 MB as two links, with 500 MiB of memory for the whole process.
+#[test]
+fn a_large_mesh_takes_little_memory() {
+    let folder = Folder::new();
+    let side = 316;
+    let place = |i: usize, j: usize| {
+        let (around, along) = (i as f32 / side as f32 * TAU, j as f32 / side as f32 * PI);
+        [0.1 * along.sin() * around.cos(), 0.1 * along.sin() * around.sin(), 0.15 * along.cos()]
+    };
+    let mut mesh = vec![0; 80];
+    mesh.extend(((2 * side * side) as u32).to_le_bytes());
+    for (i, j) in (0..side).flat_map(|i| (0..side).map(move |j| (i, j))) {
+        let [a, b, c, d] = [place(i, j), place(i + 1, j), place(i + 1, j + 1), place(i, j + 1)];
+        for triangle in [[[0.0; 3], a, c, b], [[0.0; 3], a, d, c]] {
+            mesh.extend(triangle.iter().flatten().flat_map(|number| number.to_le_bytes()));
+            mesh.extend([0; 2]);
+        }
+    }
+    assert!(mesh.len() > 9_900_000);
+    folder.write("ball.stl", mesh);
+    let link = |name: &str| {
+        format!(
+            "<link name=\"{name}\"><collision><geometry><mesh filename=\"ball.stl\"/></geometry></collision></link>"
+        )
+    };
+    let joint = "<joint name=\"j\" type=\"revolute\"><parent link=\"a\"/><child link=\"b\"/><origin xyz=\"0 0 0.3\"/></joint>";
+    folder.write("balls.urdf", format!("<robot name=\"r\">{}{}{joint}</robot>", link("a"), link("b")));
+    let program = env!("CARGO_BIN_EXE_bodyschema");
+    let limited = format!("ulimit -v {}; exec {program} body import balls.urdf --out body.toml", 500 * 1024);
+    let said = Said::by(Command::new("bash").args(["-c", &limited]).current_dir(folder.path()));
+    assert_eq!((said.status, &*said.err), (Some(0), ""), "{said:?}");
+    assert!(said.out.starts_with("2 parts, in body.toml"), "{said:?}");
 }
 
 #[test]

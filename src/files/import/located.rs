@@ -1,5 +1,7 @@
 //! Find the files that a description names, such as meshes and included files.
 
+use std::ffi::OsString;
+use std::os::unix::ffi::OsStringExt;
 use std::path::{Path, PathBuf};
 
 use super::document::Wrong;
@@ -30,23 +32,25 @@ impl Located {
     }
 
     /// The file of this name in `within`, relative to the description; none if it is not there. Of names such as
-    /// `package://NAME/REST`, the package is looked for in the folders above.
+    /// `package://NAME/REST`, the package is looked for in the folders above. The name may be in Latin-1 on the disk, as old archives have it.
     ///
     /// # Errors
     /// If it is outside the folders that a description may name.
     pub(super) fn find(&self, within: &str, name: &str) -> Result<Option<PathBuf>, Wrong> {
         let name = name.replace('\\', "/");
-        let found = match name.split_once("://") {
-            Some(("package" | "model", rest)) => self.in_package(rest),
-            Some(("file", rest)) => Some(PathBuf::from(rest)),
-            Some((scheme, _)) => {
+        let (scheme, rest) = name.split_once("://").unwrap_or(("", &name));
+        let place: &dyn Fn(&Path) -> Option<PathBuf> = match scheme {
+            "package" | "model" => &|rest| self.in_package(rest),
+            "file" => &|rest| Some(rest.to_owned()),
+            "" => &|rest| Some(self.folder.join(within).join(rest)),
+            _ => {
                 return Err(format!(
                     "is at `{name}`, but {scheme}:// is not read; give the path of a file or package://"
                 ));
             }
-            None => Some(self.folder.join(within).join(&name)),
         };
-        let Some(path) = found.and_then(|path| path.canonicalize().ok()).filter(|path| path.is_file()) else {
+        let there = |rest: PathBuf| place(&rest)?.canonicalize().ok().filter(|path| path.is_file());
+        let Some(path) = [Some(rest.into()), in_latin_1(rest)].into_iter().flatten().find_map(there) else {
             return Ok(None);
         };
         if !path.starts_with(&self.top) {
@@ -58,8 +62,9 @@ impl Located {
     }
 
     /// A file by the name of its package and its path in that.
-    fn in_package(&self, name: &str) -> Option<PathBuf> {
-        let (package, rest) = name.split_once('/')?;
+    fn in_package(&self, name: &Path) -> Option<PathBuf> {
+        let mut names = name.iter();
+        let (package, rest) = (names.next()?, names.as_path());
         let above = || self.folder.ancestors().take_while(|folder| folder.starts_with(&self.top));
         let inside = above().filter(|folder| folder.ends_with(package)).map(|folder| folder.join(rest));
         let beside = above().map(|folder| folder.join(name));
@@ -67,6 +72,12 @@ impl Located {
         let renamed = above().map(|folder| folder.join(rest));
         inside.chain(beside).chain(renamed).find(|path| path.is_file())
     }
+}
+
+/// A path whose names are in Latin-1; none if it has other letters.
+fn in_latin_1(path: &str) -> Option<PathBuf> {
+    let bytes = path.chars().map(|letter| u8::try_from(letter).ok()).collect::<Option<Vec<u8>>>()?;
+    Some(OsString::from_vec(bytes).into())
 }
 
 #[cfg(test)]
@@ -102,6 +113,12 @@ mod tests {
         assert_eq!(found("package://hand/meshes/h.stl").unwrap(), "h.stl");
         assert_eq!(files.find("../meshes", "m.stl").unwrap(), files.find("", "../meshes/m.stl").unwrap());
         assert!(found("m.stl").is_none() && found("package://robot").is_none());
+        // An umlaut in Latin-1 on the disk.
+        fs::write(at("a/b/c/d/robot/meshes").join(OsString::from_vec(b"t\xfcr.stl".to_vec())), "").unwrap();
+        for name in ["../meshes/tür.stl", "package://robot/meshes/tür.stl"] {
+            assert_eq!(found(name).unwrap().into_vec(), b"t\xfcr.stl", "{name}");
+        }
+        assert!(found("../meshes/t\u{3c9}r.stl").is_none());
         let far = files.find("", "../../../../../far.stl").unwrap_err();
         assert!(
             far.contains("far.stl`, more than 4 folders above") && far.contains("copy it beside"),
