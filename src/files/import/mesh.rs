@@ -34,6 +34,8 @@ fn too_many() -> Wrong {
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Mesh {
     triangles: Vec<[Column<f64>; 3]>,
+    /// Half axes of the ellipsoid that the triangles stand for, if they do, m. Its sensors are on the ellipsoid itself.
+    half_axes: Option<Column<f64>>,
 }
 
 /// Reads a mesh, in the unit of its file (COLLADA: in m).
@@ -76,16 +78,17 @@ impl Mesh {
         if triangles.is_empty() {
             return Err("has no triangle with an area".to_owned());
         }
-        Ok(Self { triangles })
+        Ok(Self { triangles, half_axes: None })
     }
 
     /// The mesh of an ellipsoid with these half axes, m: a globe of 24 rings of 48 quadrilaterals, each two triangles.
-    pub(super) fn ellipsoid([a, b, c]: Vector3) -> Result<Self, Wrong> {
+    pub(super) fn ellipsoid(half_axes: Vector3) -> Result<Self, Wrong> {
         const RINGS: usize = 24;
+        let half_axes = Column::from(half_axes);
         let place = |ring: usize, at: usize| {
             let [(out, up), (y, x)] =
                 [ring as f64 / RINGS as f64, at as f64 / RINGS as f64].map(|part| (PI * part).sin_cos());
-            Column::new(a * out * x, b * out * y, -c * up)
+            Column::new(out * x, out * y, -up).component_mul(&half_axes)
         };
         let mut triangles = Vec::with_capacity(4 * RINGS * RINGS);
         for ring in 0..RINGS {
@@ -97,12 +100,13 @@ impl Mesh {
                     .extend([[0, 1, 2], [0, 2, 3]].map(|triangle| triangle.map(|corner| corners[corner])));
             }
         }
-        Self::new(triangles)
+        Ok(Self { half_axes: Some(half_axes), ..Self::new(triangles)? })
     }
 
     /// The mesh with all corners moved.
     pub(super) fn moved(mut self, way: impl Fn(Column<f64>) -> Column<f64>) -> Self {
         self.triangles.iter_mut().flatten().for_each(|corner| *corner = way(*corner));
+        self.half_axes = None;
         self
     }
 
@@ -221,11 +225,23 @@ impl Mesh {
                     (u, v) = (1.0 - u, 1.0 - v);
                 }
                 let [a, b, c] = corners;
-                let position = (a + u * (b - a) + v * (c - a)).into();
-                spots.push(Spot { position, normal: normal.normalize().into() });
+                let position = a + u * (b - a) + v * (c - a);
+                spots.push(self.half_axes.map_or_else(
+                    || Spot { position: position.into(), normal: normal.normalize().into() },
+                    |half_axes| on_ellipsoid(&half_axes, &position),
+                ));
             }
         }
         spots
+    }
+}
+
+/// Where the way from the centre of an ellipsoid to a place leaves the ellipsoid.
+fn on_ellipsoid(half_axes: &Column<f64>, place: &Column<f64>) -> Spot {
+    let on_ball = place.component_div(half_axes).normalize();
+    Spot {
+        position: on_ball.component_mul(half_axes).into(),
+        normal: on_ball.component_div(half_axes).normalize().into(),
     }
 }
 

@@ -73,6 +73,20 @@ fn an_ellipsoid_has_its_volume_and_extent() {
     assert!(sides.iter().zip([0.2, 0.4, 0.6]).all(|(a, b)| (a - b).abs() < 1e-9), "{sides:?}");
 }
 
+#[test]
+fn sensors_are_on_the_ellipsoid_itself_and_look_along_its_gradient() {
+    let half_axes = Column::new(0.1, 0.2, 0.3);
+    for Spot { position, normal } in Mesh::ellipsoid(half_axes.into()).unwrap().spread(100) {
+        let scaled = Column::from(position).component_div(&half_axes);
+        assert!((scaled.norm() - 1.0).abs() < 1e-12, "{position:?}");
+        let gradient = scaled.component_div(&half_axes).normalize();
+        assert!((gradient - Column::from(normal)).norm() < 1e-12, "{position:?}: {normal:?}");
+    }
+    // What is moved is a mesh like any other.
+    let moved = Mesh::ellipsoid(half_axes.into()).unwrap().moved(|corner| corner + Column::x());
+    assert!(moved.spread(100).iter().all(|spot| (spot.position[0] - 1.0).abs() < 0.1));
+}
+
 /// A tetrahedron in every format: its corners at 0 and at 1, 2 and 3 along x, y and z.
 fn written(folder: &Path) -> Vec<std::path::PathBuf> {
     let corners = [[0.0_f32; 3], [1.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 3.0]];
