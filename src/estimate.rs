@@ -50,13 +50,13 @@ use crate::stages::quantise::{Quantise, quantise};
 use crate::stages::rigid_parts::{MIN_SENSORS, RigidParts, rigid_parts, stratified};
 use crate::stages::sense::Tactile;
 
-/// Sensors that parts are searched for among, and distances computed of, spread over all.
+/// Most sensors among which parts are searched for, and whose distances are computed, spread over all.
 const MAX_SENSORS: usize = 800;
 /// Samples that distances are computed from, spread over all.
 const MAX_SAMPLES: usize = 20_000;
 
-/// Largest share of a sensor's mean square that the motion of its part may leave, if it explains the sensor: where few sensors are noisy,
-/// and where most are.
+/// Largest residual at which the motion of its part explains a sensor, as a share of the mean square of the sensor's roots: where few
+/// sensors are noisy, and where most are.
 const MAX_RESIDUAL: [f64; 2] = [0.05, 0.2];
 /// Shares of sensors that are explained from which on rigid parts fit a recording, and may fit it.
 const GOOD: f64 = 0.8;
@@ -80,7 +80,7 @@ pub enum Verdict {
     /// Parts and tree mean nothing. Rigid parts explain fewer than 65 % of the sensors, sensors do not read 0 at rest, the movement repeats
     /// itself, or few sensors feel something at a time (not tested where most sensors are noisy).
     DoesNotFit,
-    /// They explain at least 80 % of the sensors, over 1,000 samples or more, and the movement does not come back to similar states.
+    /// Rigid parts explain at least 80 % of the sensors, over 1,000 samples or more, and the movement does not come back to similar states.
     Good,
     /// All else.
     Doubtful,

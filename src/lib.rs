@@ -10,8 +10,8 @@
 //! benchmarks `estimate`, `src/study` runs many configurations, `src/analysis` judges claims, `src/report` writes pages and pictures,
 //! and `src/cli` has a file for each subcommand.
 //!
-//! A body also moves as a BVH file has recorded it ([`movement`]); `src/files/import` makes bodies of BVH, URDF and MJCF. For one's own robot,
-//! a [`recording`] is cleaned, and [`estimate`](mod@estimate) finds its parts, its tree and the bootstrap support of each joint.
+//! A body also moves as a BVH file has recorded it ([`movement`]); `src/files/import` makes bodies of BVH, URDF and MJCF. For one's own
+//! robot, a [`recording`] is cleaned, and [`estimate`](mod@estimate) finds its parts, its tree and the bootstrap support of each joint.
 //!
 //! From a movement to a tree:
 //!

@@ -282,17 +282,17 @@ pub fn infer_and_score(
             infer(&map, model, schema, settings.experiment.seed, simulation, tick)?
         }
     };
-    let record = |draw: &Sample| {
-        let score = score(&draw.labels, &draw.tree, &body.truth, settings.evaluate.eligible_ari);
+    let record = |sample: &Sample| {
+        let score = score(&sample.labels, &sample.tree, &body.truth, settings.evaluate.eligible_ari);
         Record {
             simulation,
             coordination,
             dimension,
             model,
-            chain: draw.chain,
-            sweep: draw.sweep,
-            parts: parts(&draw.labels),
-            log_posterior: draw.log_posterior,
+            chain: sample.chain,
+            sweep: sample.sweep,
+            parts: parts(&sample.labels),
+            log_posterior: sample.log_posterior,
             ari: score.ari,
             eligible: score.eligible,
             tree_correct: score.tree_correct,

@@ -280,6 +280,7 @@ fn what_cannot_be_done_is_refused_in_one_line() {
     let twice = DESIGN
         .replace("spin_damping = 0.1 }", "spin_damping = 0.1 }\nsettings = { motion = { error = \"raw\" } }");
     refused(&twice, "--out out", "gains are those of a torque");
+    folder.write("design.toml", DESIGN);
     for shard in ["3/2", "0/2", "1/0", "x", "-1/2"] {
         let said = folder.run(&format!("study design.toml --shard={shard} --out out"));
         assert!(said.status == Some(2) && said.err.contains("a shard is I/N"), "{said:?}");

@@ -5,15 +5,10 @@ use std::fmt::Write;
 use bodyschema::files::body::read_body;
 
 use crate::support::folder::Folder;
-use crate::support::repository::{read, repository};
-use crate::support::small::small_chain;
+use crate::support::repository::repository;
+use crate::support::small::{small_body, small_chain};
 
 const STAR: &str = "bodies/star.toml";
-
-/// Half of its sensors, 20 on each part, take half the time.
-fn small_star() -> String {
-    read(STAR).replace("sensors = 40", "sensors = 20")
-}
 
 /// A folder in which a body has moved for 300 s; `rest.csv` has the sites of its sensors at rest.
 fn moved(body: &str) -> Folder {
@@ -49,7 +44,7 @@ fn places(folder: &Folder) -> Vec<impl Fn(&str) -> f64> {
 
 #[test]
 fn joints_are_placed_by_sensors_at_rest_and_the_description_is_read_back() {
-    let folder = moved(&small_star());
+    let folder = moved(&small_body(STAR));
     let said = folder.succeed("estimate moved/tactile.npy --sensors rest.csv --out found");
     assert!(said.contains("body.urdf: 5 boxes; the place of 4 of 4 joints is known from touch"), "{said}");
     let anchors: Vec<[f64; 3]> =
@@ -90,7 +85,7 @@ fn a_description_of_others_stays_and_an_own_one_goes_with_the_sites() {
 
 #[test]
 fn sensors_in_the_frames_of_their_own_solids_place_joints_in_both_frames() {
-    let folder = moved(&small_star());
+    let folder = moved(&small_body(STAR));
     folder.succeed("estimate moved/tactile.npy --sensors moved/sensors.csv --out found");
     for place in places(&folder) {
         // The z axis of a limb's frame runs along it, and its joint is 0.05 m before its end.

@@ -275,6 +275,7 @@ fn what_is_no_design_is_refused_in_one_line() {
     fs::create_dir_all(folder.at("other/checkpoints")).unwrap();
     folder.write("design.toml", &comparison);
     folder.refuse("study design.toml --out other", "another command");
-    folder.refuse("study nothing.toml --out out", "nothing.toml: no such file");
-    folder.refuse("study nothing.toml --out out", "multiverse");
+    let said = folder.run("study nothing.toml --out out");
+    said.is_refused("nothing.toml: no such file");
+    said.is_refused("multiverse");
 }

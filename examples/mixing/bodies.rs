@@ -116,7 +116,7 @@ fn infer_all(
     }
     let kept: Vec<_> = draws.into_iter().filter(|draw| draw.sweep > last / 2).collect();
     let posterior = Posterior::of(&map, Model::DpgmmLj, &kept, &settings, SEED, number)?;
-    let summary = posterior.draw();
+    let summary = posterior.summary();
     let score = score(&summary.labels, &summary.tree, &body.truth, 1.0);
     let mixing = || posterior.mixing.iter().map(|(_, mixing)| mixing);
     condition.posteriors.push(PosteriorRow {

@@ -23,7 +23,7 @@ def found(moved):
 @pytest.mark.parametrize("noise", [0.0, 0.01])
 @pytest.mark.filterwarnings("ignore::bodyschema.RecordingWarning")
 def test_the_same_as_the_command_line(moved, found, command, tmp_path, noise):
-    # Noise takes time: half of the sensors.
+    # With noise, half of the sensors: estimates of noisy touch take longer.
     used = slice(None, None, 2 if noise else 1)
     touch, positions, normals, solids = moved.touch[:, used], moved.positions[used], moved.normals[used], moved.solids[used]
     size = noise * np.sqrt((touch**2).mean(axis=0))

@@ -24,7 +24,7 @@ stop() {
     done
     # Until they have written their last files.
     for _ in $(seq 50); do pgrep -f "$work" >/dev/null || break; sleep 0.1; done
-    [ $status = 0 ] || tail -n 5 "$work"/*.log "$work"/slurm/logs/*.log >&2 2>/dev/null || true
+    [ $status = 0 ] || tail -n 5 "$work"/*.log "$work"/slurm*/logs/*.log >&2 2>/dev/null || true
     rm -rf "$work"
     exit $status
 }
@@ -105,5 +105,7 @@ design=$here/small-bodies.toml
 "$program" bodies --design "$design" --out "$work/bodies"
 "$here/submit.sh" --shards 2 --bodies --design "$design" --program "$program" --out "$work/slurm-bodies" -- --cpus-per-task=1 --mem=500M
 wait_for_all
+[ "$(grep -l "This shard is finished" "$work"/slurm-bodies/logs/shard-*.log | wc -l)" = 2 ]
+grep -q "continuing from what an earlier run finished" "$work/slurm-bodies/logs/gather.log"
 diff -r --exclude=checkpoints --exclude=logs --exclude=ro-crate-metadata.json "$work/bodies" "$work/slurm-bodies"
 echo "so did a study of bodies"

@@ -47,7 +47,7 @@ pub(crate) struct Judged {
     pub place: String,
     /// The verdict.
     pub verdict: Verdict,
-    /// The same of the posterior samples of highest log posterior, where the claim counts them: an extension.
+    /// The same of each simulation's most probable sample, where the claim counts samples: an extension.
     pub best: Option<(Estimate, String)>,
     /// The reading of the paper that the posterior samples follow.
     pub reading: Sampler,

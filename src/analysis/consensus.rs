@@ -24,7 +24,7 @@ pub struct Consensus {
 }
 
 /// The partition with the least mean variation of information to all samples (Meilă 2007; Wade and Ghahramani 2018), among
-/// 100 of those drawn, and those that then give each sensor the part which most of them give it: where many sensors are
+/// 100 of those drawn, and those that then give each sensor the part which most samples give it: where many sensors are
 /// uncertain, no sample has all of them right.
 ///
 /// # Panics

@@ -64,7 +64,7 @@ impl Posterior {
     }
 
     /// The consensus and the likeliest tree over it, as a sample.
-    pub fn draw(&self) -> Sample {
+    pub fn summary(&self) -> Sample {
         let edges = self.tree.iter().flat_map(|tree| &tree.tree);
         Sample {
             chain: 0,

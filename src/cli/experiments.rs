@@ -122,7 +122,7 @@ impl Reproduce {
 /// Writes into DIR: recordings.csv (a row for each recording), edges.csv (a row for each edge of each estimated tree) and
 /// bodies.md (the report). A study that was stopped continues; with more movements, it reuses those in checkpoints/. Each
 /// thread holds one simulated movement in memory: 0.4 GB for 840 sensors and 100,000 samples. On several machines: run each shard
-/// into one shared folder, then the study without --shard, which only writes the tables.
+/// into one shared folder, then the same command without --shard, which runs what is missing and writes the tables.
 #[derive(Args)]
 pub(super) struct Bodies {
     /// Design file, such as reproduce/bodies.toml; paths of body files are relative to its folder
@@ -159,7 +159,9 @@ impl Bodies {
         let out = self.out.display();
         say(match self.shard {
             Some(_) => {
-                format!("This shard is finished, in {out}. After all shards, run the study without --shard.")
+                format!(
+                    "This shard is finished, in {out}. After all shards, run the same command without --shard."
+                )
             }
             None => format!("All files are in {out}; open bodies.md there."),
         })?;

@@ -99,7 +99,7 @@ pub(super) fn print(posterior: &Posterior, truth: Option<&Truth>, eligible_ari: 
         say(format!("posterior probability of this tree, given these parts: {}", percent(tree.probability)))?;
     }
     if let Some(truth) = truth {
-        let summary = posterior.draw();
+        let summary = posterior.summary();
         print_score(&score(&summary.labels, &summary.tree, truth, eligible_ari))?;
     }
     if let Some(what) = posterior.unmixed() {

@@ -21,7 +21,7 @@ pub struct Manifest {
     /// The experiment, `exp1` or `exp2`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub experiment: Option<String>,
-    /// The kind of study: `study` for a design of one, or `bodies`.
+    /// The subcommand of a study: `study` or `bodies`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub study: Option<String>,
     /// Conditions and amounts of an experiment, in words.

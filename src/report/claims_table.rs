@@ -30,7 +30,7 @@ pub struct Row {
     pub statement: String,
     /// The unit of all values; empty if nothing is measured.
     pub unit: Option<Unit>,
-    /// The paper's value, where it gives a number; empty for the best draw, as the next.
+    /// The paper's value, where it gives a number; empty for the best sample, as the next.
     pub published: Option<f64>,
     /// The paper's value in its own words.
     pub wording: String,
@@ -39,7 +39,7 @@ pub struct Row {
     /// What it is over, and its interval.
     #[serde(flatten)]
     pub cells: EstimateCells,
-    /// Lower end of the accepted range; empty for the best draw, as the next two.
+    /// Lower end of the accepted range; empty for the best sample, as the next two.
     pub accepted_low: Option<f64>,
     /// Upper end of the accepted range.
     pub accepted_high: Option<f64>,
@@ -47,7 +47,7 @@ pub struct Row {
     pub verdict: Option<Verdict>,
     /// Where the value was found, or why there is no value.
     pub found: String,
-    /// Single bodies with a value; empty for the best draw, as the next.
+    /// Single bodies with a value; empty for the best sample, as the next.
     #[serde(default)]
     pub bodies: Option<usize>,
     /// Share of them in which the published value would have been seen.
@@ -113,7 +113,7 @@ impl Row {
         }
     }
 
-    /// The extension: over the draw of highest log posterior of each simulation.
+    /// The extension: over the sample of highest log posterior of each simulation.
     fn best_sample(claim: &Claim, reading: Sampler, estimate: &Estimate, found: &str) -> Self {
         Self {
             id: claim.id.clone(),

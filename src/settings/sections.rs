@@ -70,7 +70,7 @@ impl Settings {
         self.check_matrices()?;
         self.baselines.check()?;
         self.check_clusters()?;
-        Ok(self.check_samples()?)
+        Ok(self.check_posterior_samples()?)
     }
 
     /// M, the number of sensors on the body.
@@ -138,14 +138,14 @@ impl Settings {
     }
 
     /// Checks that the posterior samples of all simulations and conditions fit the memory.
-    fn check_samples(&self) -> Checked {
+    fn check_posterior_samples(&self) -> Checked {
         let simulations = self.experiment.simulations;
         let conditions = (2 * self.experiment.dimensions.len()).max(self.experiment.coordinations.len());
         check(
             "experiment.simulations",
             simulations,
             (1..=10_000).contains(&simulations)
-                && simulations * conditions * self.schema.samples() <= 10_000_000,
+                && simulations * conditions * self.schema.posterior_samples() <= 10_000_000,
             "1 to 10000, with at most 10 million posterior samples (schema.chains, schema.keep) in all conditions",
         )
     }

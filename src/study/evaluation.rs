@@ -1,5 +1,5 @@
-//! Evaluate all configurations of a grid or of drawn ones together: in what share of them each claim holds, which factors decide, and how
-//! it would look if the published rate were true.
+//! Evaluate the configurations of a grid, or those that were drawn, together: in what share of them each claim holds, which factors decide,
+//! and how it would look if the published rate were true.
 
 use std::collections::HashMap;
 

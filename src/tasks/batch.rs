@@ -29,7 +29,7 @@ use crate::stages::simulate::{Resolution, Trajectory};
 pub(crate) struct TaskOutput {
     /// All posterior samples, evaluated, by condition.
     pub records: Vec<Record>,
-    /// Of each condition the one of highest log posterior.
+    /// Of each condition the posterior sample of highest log posterior.
     pub best: Vec<Sample>,
     /// All clusterings, evaluated.
     pub baselines: Vec<BaselineRecord>,

@@ -33,12 +33,17 @@ pub fn small(over: &str) -> String {
     settings.to_string()
 }
 
-/// The text of a body file: a chain of three parts with half of its sensors, 20 on each. It is estimated in less than half of the time.
-pub fn small_chain() -> String {
-    let chain = read("bodies/chain-3.toml");
-    let small = chain.replace("sensors = 40", "sensors = 20");
-    assert!(small != chain, "it has 40 sensors on each part");
+/// The text of a bundled body file with half of its sensors, 20 on each part. It is estimated in less than half of the time.
+pub fn small_body(file: &str) -> String {
+    let body = read(file);
+    let small = body.replace("sensors = 40", "sensors = 20");
+    assert!(small != body, "{file} has 40 sensors on each part");
     small
+}
+
+/// The same of a chain of three parts.
+pub fn small_chain() -> String {
+    small_body("bodies/chain-3.toml")
 }
 
 /// Five Gaussian clusters in a row, far apart, so that any working sampler finds them: `clusters.npy`, `labels.csv`, `tree.csv`.

@@ -67,11 +67,11 @@ pub(super) struct Row {
     pub nearest_right: bool,
     /// The same of the tree of most information between the estimated parts.
     pub chow_liu_right: bool,
-    /// Number of parts of the DPGMM-LJ's best draw.
+    /// Number of parts of the DPGMM-LJ's most probable sample.
     pub dpgmm_lj_parts: Option<usize>,
     /// Whether its tree is right.
     pub dpgmm_lj_right: bool,
-    /// Whether the tree of the DPGMM's best draw is right, by Prim's algorithm.
+    /// Whether the tree of the DPGMM's most probable sample is right, by Prim's algorithm.
     pub dpgmm_prim_right: bool,
 }
 

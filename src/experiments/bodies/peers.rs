@@ -44,7 +44,7 @@ fn entropy(series: &[u8], levels: usize) -> f64 {
     counts.into_iter().filter(|count| *count > 0).map(|count| -share(count) * share(count).log2()).sum()
 }
 
-/// The draw of highest log posterior of the DPGMM-LJ, and of the DPGMM with Prim's tree; `None` where there is no body map.
+/// The posterior sample of highest log posterior of the DPGMM-LJ, and of the DPGMM with Prim's tree; `None` where there is no body map.
 pub(super) fn mixtures(distances: &Distances, settings: &Settings, simulation: usize) -> Option<[Sample; 2]> {
     let scaling = ClassicalScaling::new(distances, DIMENSIONS).ok()?;
     let map = scaling.coordinates(scaling.positive().clamp(1, DIMENSIONS)).ok()?;

@@ -1,11 +1,12 @@
 //! Run the study of bodies, and write its tables and its page.
 
+use std::cmp::Reverse;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use rayon::prelude::*;
 
-use super::design::Design;
+use super::design::{Design, StudyBody, Way};
 use super::movement::{EdgeRow, Found, Movement, Row};
 use super::page::{PICTURE, Page};
 use crate::files::checkpoint::Checkpoints;
@@ -14,6 +15,7 @@ use crate::files::result_folder::ResultFolder;
 use crate::files::tables::read_rows;
 use crate::files::{FileError, prepare_folder, read_text, write_text};
 use crate::report::plot;
+use crate::settings::Settings;
 use crate::tasks::error::ExperimentError;
 use crate::tasks::progress::progress;
 use crate::tasks::shard::Shard;
@@ -27,7 +29,8 @@ const PAGE: &str = "bodies.md";
 /// figures/bodies.svg.
 ///
 /// A study that was interrupted goes on from the movements that it finished, and so does one of more movements: what each gave
-/// stays in the folder checkpoints. A shard writes nothing else: whoever then runs the whole study goes on from all of them.
+/// stays in the folder checkpoints. A shard runs its own movements, and writes only their checkpoints. A run without one goes on from
+/// these, runs what is missing, and writes the tables.
 ///
 /// # Errors
 /// If a body or the settings cannot be used, a movement is unstable, or a file cannot be written.
@@ -55,10 +58,8 @@ pub(crate) fn study(
     let hashes: Vec<&str> = bodies.iter().map(|body| body.sha256.as_str()).collect();
     let checkpoints = Checkpoints::new(out, &(Design { movements: 0, ..design.clone() }, hashes));
     let each = design.recordings.len() as u64 + 1;
-    let of_shard = |place: &usize| shard.unwrap_or(Shard::WHOLE).has(*place);
-    let each_time = bodies.len() * settings.len();
-    let count = (0..each_time * design.movements).filter(of_shard).count();
-    let bar = progress(each * count as u64, format!("{count} simulations"));
+    let own = dealt(design, &bodies, &settings, shard.unwrap_or(Shard::WHOLE));
+    let bar = progress(each * own.len() as u64, format!("{} simulations", own.len()));
     let failed = AtomicBool::new(false);
     let run = |movement: &Movement| -> Result<Found, ExperimentError> {
         if let Some(found) = checkpoints.recall(&movement.name()) {
@@ -75,23 +76,13 @@ pub(crate) fn study(
         checkpoints.keep(&movement.name(), &found)?;
         Ok(found)
     };
-    let mut found: Vec<(usize, Found)> = Vec::new();
-    for number in 1..=design.movements {
-        let of_body = |(of_body, body)| {
-            let movement = move |(way, settings)| Movement { design, body, of_body, way, settings, number };
-            settings.iter().map(move |(way, settings)| movement((*way, settings)))
-        };
-        let movements = bodies.iter().enumerate().flat_map(of_body).enumerate();
-        let own = movements.filter(|(at, _)| of_shard(&((number - 1) * each_time + at)));
-        let own: Vec<(usize, Movement)> = own.collect();
-        let results = own.par_iter().map(|(at, movement)| Ok((*at, run(movement)?)));
-        found.extend(results.collect::<Result<Vec<_>, ExperimentError>>()?);
-    }
+    let found = own.par_iter().map(|(place, movement)| Ok((*place, run(movement)?)));
+    let mut found = found.collect::<Result<Vec<_>, ExperimentError>>()?;
     bar.finish_and_clear();
     if shard.is_some() {
         return Ok(());
     }
-    // By body, then by kind and p, then by movement.
+    // In the order of the tables.
     found.sort_by_key(|(place, _)| *place);
     let (mut rows, mut edges) = (Vec::new(), Vec::new());
     for (_, found) in found {
@@ -103,6 +94,28 @@ pub(crate) fn study(
     folder.write_text(COPY, text)?;
     folder.write_manifest(Manifest::of_study("bodies", design.seed))?;
     draw(&Page { design, rows: &rows, edges: &edges }, out)
+}
+
+/// The movements of a shard, each with its place in the tables: by body, then by kind and p, then by number.
+fn dealt<'a>(
+    design: &'a Design,
+    bodies: &'a [StudyBody],
+    settings: &'a [(Way<'a>, Settings)],
+    shard: Shard,
+) -> Vec<([usize; 3], Movement<'a>)> {
+    let mut all = Vec::new();
+    for number in 1..=design.movements {
+        for (of_body, body) in bodies.iter().enumerate() {
+            for (at, (way, settings)) in settings.iter().enumerate() {
+                let movement = Movement { design, body, of_body, way: *way, settings, number };
+                all.push(([of_body, at, number], movement));
+            }
+        }
+    }
+    // Those of most sensors are dealt out first, so that shards have about as much to do.
+    all.sort_by_key(|(_, movement)| Reverse(movement.body.body.agent.sites.len()));
+    let dealt = all.into_iter().enumerate().filter(|(at, _)| shard.has(*at));
+    dealt.map(|(_, movement)| movement).collect()
 }
 
 /// Whether a folder holds a finished study of bodies.

@@ -113,7 +113,7 @@ fn by(sampler: Sampler, settings: &Settings) -> Result<Settings, SettingsError> 
         Sampler::AuthorsCode => settings.with(AUTHORS, "reproduce/authors.toml"),
         Sampler::Equations | Sampler::SplitMerge => settings.with(EQUATIONS, "reproduce/equations.toml"),
     }?;
-    other.schema.chains = settings.schema.samples();
+    other.schema.chains = settings.schema.posterior_samples();
     other.validate()?;
     Ok(other)
 }

@@ -38,7 +38,7 @@ pub(crate) fn nineteen_of_twenty() -> Vec<Judged> {
     judged((0..20).map(|chain| sample(1, chain, Some(chain < 19))).collect())
 }
 
-/// Without one that is eligible.
+/// Without an eligible sample.
 pub(crate) fn no_eligible_sample() -> Vec<Judged> {
     judged(vec![sample(1, 0, None)])
 }

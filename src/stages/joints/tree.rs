@@ -12,8 +12,8 @@ use crate::stages::rigid_parts::{MAX_RANK, MotionSubspace, motions_of_parts};
 use crate::stages::sense::Tactile;
 use crate::stages::tree::{Edge, prim};
 
-/// Most blocks of samples that are drawn with replacement, and the fewest samples of a block: more than speeds remember. Only recordings of
-/// fewer than 200 samples have shorter ones.
+/// Most blocks of samples that are drawn with replacement, and the fewest samples of a block: longer than speeds are correlated in time. Only
+/// recordings of fewer than 200 samples have shorter blocks.
 const BLOCKS: usize = 50;
 const BLOCK_SAMPLES: usize = 100;
 /// Number of trees over resampled blocks.
@@ -26,8 +26,8 @@ pub struct Pair {
     pub part: usize,
     /// Label of the other, which is larger.
     pub other: usize,
-    /// Largest cosine found between squared speeds of one point, as both parts feel it, 0 to 1: high if a joint is there. Both are positive
-    /// semidefinite forms of the motions; the largest of all may be larger.
+    /// Cosine over samples between a squared speed that one part feels and one that the other feels, the largest that was found, 0 to 1: high
+    /// if they share a joint. A lower bound: iterations may miss the largest.
     pub correlation: f64,
     /// Information of a joint between them, in nats: that of its speeds, and all else that their motions share, linear and quadratic, with
     /// a weight that grows with the number of samples. The tree has the most (Chow and Liu 1968).
@@ -50,8 +50,8 @@ pub struct Joints {
 }
 
 impl Joints {
-    /// The bootstrap support of an edge of the tree, 0 to 1, given the parts ([`Repeats`](crate::estimate::Repeats) also repeat the search for
-    /// parts). 0 for parts that are not there.
+    /// The bootstrap support of an edge of the tree, 0 to 1, given the parts; [`Repeats`](crate::estimate::Repeats) also repeat the search
+    /// for parts. It is 0 for parts that are not there.
     pub fn support(&self, edge: &Edge) -> f64 {
         let (a, b) = (edge.child.min(edge.parent), edge.child.max(edge.parent));
         let pair = self.pairs.iter().find(|pair| (pair.part, pair.other) == (a, b));
@@ -76,7 +76,7 @@ impl Joints {
         let is_edge = |a: usize, b: usize| {
             tree.iter().any(|edge| [(a, b), (b, a)].contains(&(edge.child, edge.parent)))
         };
-        // Parts without information are a tie with all others: the order of parts alone joins them. So their support is 0.
+        // Edges without information tie: only the order of the parts chooses among them. So their support is 0.
         let support = |a: usize, b: usize| {
             if information[(a, b)] > 0.0 { times_joined[(a, b)] as f64 / RESAMPLES as f64 } else { 0.0 }
         };

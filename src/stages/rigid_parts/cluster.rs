@@ -30,8 +30,8 @@ const MOMENTUM: [f64; 2] = [0.5, 0.98];
 const PACE: [f64; 2] = [1.1, 0.5];
 /// The least tolerance of the search: what the iterations leave. A separation, which iterates longer, goes below.
 pub(super) const SEARCH_TOLERANCE: f64 = 3e-4;
-/// Residual variance, in units of the tolerance, up to which more iterations may explain a cluster. A sensor that is in no cluster may leave as
-/// much, which with noise is more than any residual.
+/// Residual variance, in units of the tolerance, up to which more iterations may explain a cluster. A sensor that is in no cluster may
+/// leave as much, which with noise is more than any residual.
 pub(super) const MAX_OPEN: f64 = 30.0;
 /// Residual variance at which more iterations say nothing new.
 pub(super) const ROUNDING: f64 = 1e-11;
@@ -204,7 +204,7 @@ impl Cluster {
         self.components.iter().filter(|variance| **variance > PRESENT * tolerance).count()
     }
 
-    /// Whether two clusters have components in common: their union has fewer than both. What is below the least tolerance may be an error
+    /// Whether two clusters have components in common: their union has fewer than both. What is below [`SEARCH_TOLERANCE`] may be an error
     /// of the model, and is no component.
     pub(super) fn have_common(a: &Self, b: &Self, union: &Self, tolerance: f64) -> bool {
         let present = |own: &Self| own.present(tolerance.max(SEARCH_TOLERANCE));
@@ -376,8 +376,8 @@ fn per_root([sum, count]: [f64; 2]) -> f64 {
     sum / (count + 1.0)
 }
 
-/// What a root that is not felt tells of w, as a share of what one tells that is felt: all where the tolerance is the least or lower,
-/// since it is completed as exactly, and next to nothing with noise.
+/// What a root that is not felt tells of w, as a share of what one tells that is felt: all where the tolerance is [`SEARCH_TOLERANCE`] or
+/// lower, since it is completed as exactly, and next to nothing with noise.
 fn told_by_censored(tolerance: f64) -> f64 {
     f64::min(1.0, SEARCH_TOLERANCE / tolerance).powi(2)
 }

@@ -148,8 +148,8 @@ impl Search {
         self.unmixed(&seeds)
     }
 
-    /// Sets the tolerance to the median residual variance of these seed clusters, weighs the samples by what the clusters leave there, and
-    /// sets it anew.
+    /// Sets the tolerance to the median residual variance of these clusters, weighs the samples by what the clusters leave there, and sets it
+    /// anew.
     pub(super) fn calibrate(&mut self, clusters: &[Vec<usize>]) {
         self.set_tolerance(clusters);
         let found = self.unmixed(clusters);
@@ -157,11 +157,11 @@ impl Search {
         self.set_tolerance(clusters);
     }
 
-    /// Sets the tolerance to the median residual variance of these seed clusters, within bounds.
-    fn set_tolerance(&mut self, seeds: &[Vec<usize>]) {
+    /// Sets the tolerance to the median residual variance of these clusters, within bounds.
+    fn set_tolerance(&mut self, clusters: &[Vec<usize>]) {
         self.felt.tolerance = TOLERANCE[0];
         let variance = |own: &Vec<usize>| Cluster::widest(&self.felt, own.clone()).variance();
-        let variances = seeds.par_iter().map(variance).collect();
+        let variances = clusters.par_iter().map(variance).collect();
         self.felt.tolerance = median(variances).clamp(TOLERANCE[0], TOLERANCE[1]);
     }
 
@@ -283,8 +283,8 @@ impl Search {
     }
 
     /// Assigns each of these sensors to the cluster that leaves it the smallest residual, if that explains it; else it stays where it is.
-    /// Clusters keep none but these sensors, and those with fewer than [`MIN_CLUSTER`] vanish. What the clusters complete of the roots is kept
-    /// in `felt`.
+    /// Clusters keep none but these sensors, and those with fewer than [`MIN_CLUSTER`] vanish. What the clusters complete of the roots is
+    /// kept in `felt`.
     pub(super) fn assigned(&mut self, mut clusters: Vec<Cluster>, sensors: &[usize]) -> Vec<Cluster> {
         let tolerance = self.felt.tolerance;
         for _ in 0..MAX_ASSIGNMENTS {

@@ -134,7 +134,7 @@ impl State for SplitMerge<'_> {
 /// Refuses a map or settings that would take too much memory, before anything of that size is made.
 fn check_size(map: &BodyMap, settings: &Schema) -> Result<(), InferenceError> {
     let (components, dims, samples, count) =
-        (settings.components, map.dims, settings.samples(), map.points());
+        (settings.components, map.dims, settings.posterior_samples(), map.points());
     // n points span n − 1 dimensions.
     if count <= dims {
         return Err(InferenceError::Flat { points: count, dims });

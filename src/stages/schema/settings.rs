@@ -157,7 +157,7 @@ impl Schema {
     }
 
     /// Number of posterior samples that are kept.
-    pub fn samples(&self) -> usize {
+    pub fn posterior_samples(&self) -> usize {
         match self.keep {
             Keep::Last => self.chains,
             Keep::All => self.chains.saturating_mul(self.sweeps.saturating_sub(self.burn_in)),
@@ -183,7 +183,7 @@ impl Schema {
             check("schema.burn_in", self.burn_in, self.burn_in < self.sweeps, "below schema.sweeps")?;
         }
         self.authors.check()?;
-        let samples = self.samples();
+        let samples = self.posterior_samples();
         check(
             "schema.chains * (schema.sweeps - schema.burn_in)",
             samples,
