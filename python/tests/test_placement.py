@@ -23,15 +23,12 @@ def found(moved):
 @pytest.mark.parametrize("noise", [0.0, 0.01])
 @pytest.mark.filterwarnings("ignore::bodyschema.RecordingWarning")
 def test_the_same_as_the_command_line(moved, found, command, tmp_path, noise):
-    # With noise, half of the sensors: estimates of noisy touch take longer.
-    used = slice(None, None, 2 if noise else 1)
-    touch, positions, normals, solids = moved.touch[:, used], moved.positions[used], moved.normals[used], moved.solids[used]
-    size = noise * np.sqrt((touch**2).mean(axis=0))
-    touch = (touch + size * np.random.default_rng(1).standard_normal(touch.shape)).astype(np.float32)
+    size = noise * np.sqrt((moved.touch**2).mean(axis=0))
+    touch = (moved.touch + size * np.random.default_rng(1).standard_normal(moved.touch.shape)).astype(np.float32)
     found = bodyschema.estimate(touch) if noise else found
-    placed = bodyschema.place_joints(touch, found, positions, normals, solids)
+    placed = bodyschema.place_joints(touch, found, moved.positions, moved.normals, moved.solids)
     np.save(tmp_path / "tactile.npy", touch)
-    sites = np.column_stack([solids, positions, normals])
+    sites = np.column_stack([moved.solids, moved.positions, moved.normals])
     np.savetxt(tmp_path / "sensors.csv", sites, delimiter=",", header="frame,x,y,z,nx,ny,nz", comments="", fmt=["%d"] + 6 * ["%.17g"])
     command("estimate", tmp_path / "tactile.npy", "--sensors", tmp_path / "sensors.csv", "--out", tmp_path / "found")
     assert placed.to_urdf(tmp_path / "own.urdf").read_text() == (tmp_path / "found" / "body.urdf").read_text()
