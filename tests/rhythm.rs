@@ -2,8 +2,7 @@
 
 use std::f64::consts::TAU;
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::path::Path;
 
 use bodyschema::estimate::{Fit, Verdict, estimate};
 use bodyschema::files::body::read_body;
@@ -241,44 +240,26 @@ fn p_locks_joints_as_in_random_movement() {
     assert!(trajectory.poses.chunks(5).all(|poses| poses == &trajectory.poses[..5]));
 }
 
-fn run(folder: &Path, settings: &str, out: &str) -> Command {
-    fs::write(folder.join("settings.toml"), settings).unwrap();
-    let mut command = Command::new(env!("CARGO_BIN_EXE_bodyschema"));
-    command.current_dir(folder).args([
-        "simulate",
-        "--settings",
-        "settings.toml",
-        "--seed",
-        "7",
-        "--out",
-        out,
-    ]);
-    command
-}
-
-/// The bytes of all files of a folder.
-fn bytes(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
-    let mut paths: Vec<PathBuf> = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
-    paths.sort();
-    paths.iter().map(|path| (path.file_name().unwrap().into(), fs::read(path).unwrap())).collect()
+/// Arguments for a simulation by these settings.
+fn by(folder: &Folder, settings: &str, out: &str) -> String {
+    folder.write("settings.toml", settings);
+    format!("simulate --settings settings.toml --seed 7 --out {out}")
 }
 
 #[test]
 fn the_same_seed_gives_the_same_files_and_mistakes_are_named() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = Folder::new();
     let short = "physics = { duration = 50.0 }\n";
     let rhythmic = format!("{short}motion = {{ movement = \"rhythmic\", coordination = 0.0 }}\n");
     for (settings, out) in [(&rhythmic, "first"), (&rhythmic, "second"), (&short.to_owned(), "random")] {
-        let output = run(folder.path(), settings, out).output().unwrap();
-        assert!(output.status.success(), "{output:?}");
+        folder.done(&by(&folder, settings, out));
     }
-    let of = |name: &str| bytes(&folder.path().join(name));
-    assert_eq!(of("first"), of("second"));
-    assert_ne!(of("first"), of("random"));
+    folder.has_files("second", &folder.files("first"));
+    assert_ne!(folder.files("first"), folder.files("random"));
     // A random movement has no use for a rhythm, and is not changed by one.
     let idle = format!("{short}motion = {{ rhythm = {{ frequency = 1.0 }} }}\n");
-    assert!(run(folder.path(), &idle, "idle").output().unwrap().status.success());
-    assert_eq!(of("idle"), of("random"));
+    folder.done(&by(&folder, &idle, "idle"));
+    folder.has_files("idle", &folder.files("random"));
     for (wrong, expected) in [
         (
             "motion = { movement = \"circular\" }",
@@ -302,10 +283,8 @@ fn the_same_seed_gives_the_same_files_and_mistakes_are_named() {
             "`motion.rhythm.least_amplitude` is 0.8, but must be 0 to motion.rhythm.largest_amplitude",
         ),
     ] {
-        let output = run(folder.path(), wrong, "wrong").output().unwrap();
-        let told = String::from_utf8(output.stderr).unwrap();
-        assert!(output.status.code() == Some(2) && told.contains(expected), "{wrong}: {told}");
-        assert!(told.lines().count() == 1 && !folder.path().join("wrong").exists(), "{told}");
+        folder.refuse(&by(&folder, wrong, "wrong"), expected);
+        assert!(!folder.at("wrong").exists(), "{wrong}");
     }
 }
 

@@ -207,8 +207,12 @@ impl<'a> Skeleton<'a> {
 
     /// The nearest joint on the way from another one to the root for which this holds.
     fn nearest(&self, joint: usize, holds: impl Fn(usize) -> bool) -> Option<usize> {
-        let carrying = |at: &usize| self.movement.joints()[*at].parent;
-        std::iter::successors(carrying(&joint), carrying).find(|at| holds(*at))
+        self.to_root(joint).skip(1).find(|at| holds(*at))
+    }
+
+    /// A joint and those on its way to the root.
+    fn to_root(&self, joint: usize) -> impl Iterator<Item = usize> {
+        std::iter::successors(Some(joint), |at| self.movement.joints()[*at].parent)
     }
 
     /// The joint with bones that carries a group: the nearest one, or the first of the nearest group that has one.
@@ -223,8 +227,7 @@ impl<'a> Skeleton<'a> {
 
     /// Whether a joint with bones, or one on its way to the root, travels.
     fn travels_alone(&self, joint: usize) -> bool {
-        let carrying = |at: &usize| self.movement.joints()[*at].parent;
-        std::iter::successors(Some(joint), carrying).any(|at| self.travels[at])
+        self.to_root(joint).any(|at| self.travels[at])
     }
 
     /// How a group turns on the joint that carries it. Several joints at one place are a ball joint together.
