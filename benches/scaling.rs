@@ -14,6 +14,7 @@ use bodyschema::settings::Settings;
 use bodyschema::stages::agent::Agent;
 use bodyschema::stages::body_map::{BodyMap, ClassicalScaling};
 use bodyschema::stages::distance::{Distances, information_metric};
+use bodyschema::stages::numbers::Numbers;
 use bodyschema::stages::quantise::{Symbols, quantise};
 use bodyschema::stages::schema::{Model, infer};
 use bodyschema::stages::sense::{Tactile, sense};
@@ -131,7 +132,13 @@ fn estimate_size(samples: usize, sensors: usize) -> Measured {
     drop((agent, trajectory));
     let recording = Recording::new(tactile);
     let rng = || stream(1, 1, "co-motion", 0);
-    measure(|| (), |()| estimate(&recording, &settings.quantise, &mut rng(), &|| ()).expect("enough sensors"))
+    measure(
+        || (),
+        |()| {
+            estimate(&recording, &settings.quantise, &Numbers::default(), &mut rng(), &|| ())
+                .expect("enough sensors")
+        },
+    )
 }
 
 fn quantise_size(samples: usize, sensors: usize) -> Measured {

@@ -1,13 +1,17 @@
 #!/usr/bin/env python3
 """List the numbers in the code that decide what `estimate` finds: reproduce/constants.py [--check]
 
-Reads the constants of its stages, with what is said of each there, and writes docs/shown/numbers/README.md. With --check, it compares
-them with that page instead. Needs Python 3.11, and no packages. Status: 0; 1 if the page is another one.
+Reads those that can be set and the constants of its stages, with what is said of each there, and what influence.py found. Writes
+docs/shown/numbers/README.md. With --check, it compares them with that page instead. Needs Python 3.11, and no packages. Status: 0; 1 if
+the page is another one.
 """
 
+import collections
 import pathlib
 import re
 import sys
+
+from estimated import read, revisions
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PAGE = ROOT / "docs" / "shown" / "numbers" / "README.md"
@@ -19,6 +23,9 @@ STAGES = [
     ("stages/joints", "The tree"),
     ("estimate", "The fit, and repeats"),
 ]
+INFLUENCE = PAGE.parent / "influence.csv"
+SETTABLE = ROOT / "src" / "stages" / "numbers.rs"
+NUMBER = re.compile(r"((?:^ +///[^\n]*\n)+)^ +([a-z_]+): (?:f64|usize) = ([^,\n]+),", re.M)
 CONSTANT = re.compile(r"((?:^ *///[^\n]*\n)*)^ *(?:pub(?:\([a-z]+\))? )?const ([A-Z_0-9]+): ([^=]+) = ([^;]+);", re.M)
 
 
@@ -35,20 +42,79 @@ def main():
 
 def page():
     tables = [(title, numbers(stage)) for stage, title in STAGES]
-    count = sum(map(len, (rows for _, rows in tables)))
+    can_be_set = settable()
+    count = len(can_be_set) + sum(map(len, (rows for _, rows in tables)))
     lines = [
         "# The numbers of `estimate`",
         "",
-        f"The code of `bodyschema estimate` has {count} numbers. Most decide, or bound, what it finds; a few only bound its time and memory. None is a",
-        "setting. Made by",
-        "`reproduce/constants.py` from the code, where the reason for each stands; how each step uses them is in [estimate.md](../../estimate.md).",
-        "They were chosen on calibration data ([seeds.toml](../../../reproduce/seeds.toml)). How results change with each was not studied.",
+        f"The code of `bodyschema estimate` has {count} numbers. Most decide, or bound, what it finds; a few only bound its time and memory. They",
+        "were chosen on calibration data ([seeds.toml](../../../reproduce/seeds.toml)). How each step uses them is in",
+        f"[estimate.md](../../estimate.md). {len(can_be_set)} can be set: `estimate --number NAME=VALUE`, and in Python",
+        "`estimate(touch, numbers={...})`. All others are constants, which were not varied. Made by `reproduce/constants.py` from the code.",
+        "",
+        "## Numbers that can be set",
+        "",
+        *influence(can_be_set),
+        "",
+        "## Constants",
+        "",
         "Names of one meaning for several steps, such as RIDGE, are one number each.",
     ]
     for title, rows in tables:
-        lines += ["", f"## {title}", "", "| number | value | what it is | file |", "|---|---|---|---|"]
+        lines += ["", f"### {title}", "", "| number | value | what it is | file |", "|---|---|---|---|"]
         lines += [f"| {name} | `{value}` | {meaning} | [{file.name}](../../../{file}) |" for file, name, value, meaning in rows]
     return "\n".join(lines) + "\n"
+
+
+def settable():
+    """The numbers that can be set: name, value, and what each is."""
+    found = NUMBER.findall(SETTABLE.read_text())
+    return [(name, value, meaning_of(comment)) for comment, name, value in found]
+
+
+def influence(can_be_set):
+    """What comes out with each number halved and doubled, where influence.py has tried it."""
+    if not INFLUENCE.exists():
+        return ["| number | value | what it is |", "|---|---|---|", *(f"| {name} | `{value}` | {said} |" for name, value, said in can_be_set)]
+    rows = collections.defaultdict(list)
+    for row in read(INFLUENCE):
+        rows[row["number"], row["value"]].append(row)
+    default = rows["", ""]
+    data = collections.Counter(row["data"] for row in default)
+    right = lambda own: sum(row["tree_right"] == "true" for row in own)
+    index = lambda own: sum(float(row["ari"]) for row in own) / len(own)
+    decisive, table = [], []
+    for name, value, said in can_be_set:
+        tried = [(other, rows[key, other]) for key, other in rows if key == name]
+        cells = [f"{other}: {outcome(own, default)}, {index(own):.3f}" for other, own in sorted(tried, key=lambda one: float(one[0]))]
+        if any("(" in outcome(own, default) for _, own in tried):
+            decisive.append(name)
+        table.append(f"| {name} | `{value}` | {' | '.join(cells or ['–', '–'])} | {said} |")
+    return [
+        f"`reproduce/influence.py` halved and doubled each, all others as they are (revision {revisions(default)}), on calibration data:",
+        f"{', '.join(f'{count} of {name}' for name, count in data.items())}. With the defaults, {right(default)} of {len(default)} trees are",
+        f"right, and the adjusted Rand index is {index(default):.3f} on average. Each cell has the value, how many trees are right, in",
+        "brackets how many became wrong (−) and right (+), and the mean index. A number counts as one that decides if it changes whether",
+        f"any tree is right (stated before the run): {len(decisive)} of {len(can_be_set)} do.",
+        "",
+        "| number | value | halved | doubled | what it is |",
+        "|---|---|---|---|---|",
+        *table,
+    ]
+
+
+def outcome(own, default):
+    """How many trees are right, and how many changed."""
+    before = {(row["data"], row["recording"]): row["tree_right"] for row in default}
+    changed = collections.Counter(row["tree_right"] for row in own if before[row["data"], row["recording"]] != row["tree_right"])
+    marks = [f"{sign}{changed[kind]}" for kind, sign in [("false", "−"), ("true", "+")] if changed[kind]]
+    right = sum(row["tree_right"] == "true" for row in own)
+    return f"{right} ({' '.join(marks)})" if marks else f"{right}"
+
+
+def meaning_of(comment):
+    """What a comment of the code says, as a cell of a table."""
+    return " ".join(line.strip().removeprefix("///").strip() for line in comment.splitlines()).replace("|", "\\|")
 
 
 def numbers(stage):
@@ -62,12 +128,12 @@ def numbers(stage):
         last, end = "", 0
         for found in CONSTANT.finditer(file.read_text()):
             comment, name, kind, value = found.groups()
-            said = " ".join(line.strip().removeprefix("///").strip() for line in comment.splitlines())
+            said = meaning_of(comment)
             # Two together have one comment.
             last = said or (last if found.start() == end + 1 else "")
             end = found.end()
             if "&str" not in kind:
-                rows.append((file.relative_to(ROOT), name, value, last.replace("|", "\\|")))
+                rows.append((file.relative_to(ROOT), name, value, last))
     return rows
 
 

@@ -8,6 +8,7 @@
 //! use bodyschema::numerics::rng::stream;
 //! use bodyschema::recording::Recording;
 //! use bodyschema::settings::{Base, Settings};
+//! use bodyschema::stages::numbers::Numbers;
 //! # use bodyschema::stages::{agent::Agent, sense::sense, simulate::simulate};
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! # let mut settings = Settings::paper();
@@ -20,7 +21,7 @@
 //! // `tactile` may come from a file: bodyschema::files::touch::read_touch("tactile.npy".as_ref())?
 //! let recording = Recording::new(tactile);
 //! let levels = Settings::load_over(Some(Base::ESTIMATE), None)?.quantise;
-//! let found = estimate(&recording, &levels, &mut stream(1, 1, "co-motion", 0), &|| ())?;
+//! let found = estimate(&recording, &levels, &Numbers::default(), &mut stream(1, 1, "co-motion", 0), &|| ())?;
 //! for edge in &found.joints.tree {
 //!     let support = 100.0 * found.joints.support(edge);
 //!     println!("part {} is joined to part {} (bootstrap support {support:.0} %)", edge.child, edge.parent);
@@ -46,6 +47,7 @@ use self::strokes::few_at_a_time;
 use crate::recording::Recording;
 use crate::stages::distance::{Distances, information_metric};
 use crate::stages::joints::{Joints, refine};
+use crate::stages::numbers::Numbers;
 use crate::stages::quantise::{Quantise, quantise};
 use crate::stages::rigid_parts::{MIN_SENSORS, RigidParts, rigid_parts, stratified};
 use crate::stages::sense::Tactile;
@@ -181,7 +183,7 @@ pub struct TooFewSensors {
 
 /// Estimates the parts and the tree.
 ///
-/// In: a [`Recording`], and how its pressures are quantised for distances. Out: the part of each of its sensors, and the tree over
+/// In: a [`Recording`], how its pressures are quantised for distances (`levels`), and the `numbers` that decide. Out: the part of each of its sensors, and the tree over
 /// the parts with the bootstrap support of each edge, given the parts. Calls `tick` after each of the three steps: distances,
 /// parts, joints. The same recording and state of `rng` give the same bytes on one kind of processor, whatever the number of threads.
 ///
@@ -190,6 +192,7 @@ pub struct TooFewSensors {
 pub fn estimate(
     recording: &Recording,
     levels: &Quantise,
+    numbers: &Numbers,
     rng: &mut impl Rng,
     tick: &dyn Fn(),
 ) -> Result<Estimate, TooFewSensors> {
@@ -199,12 +202,12 @@ pub fn estimate(
     let Recording { tactile, signed, .. } = recording;
     let (sensors, distances) = distances(tactile, *signed, levels);
     tick();
-    let parts = rigid_parts(tactile, *signed, &sensors);
+    let parts = rigid_parts(tactile, *signed, &sensors, numbers);
     let novelty = novelty::novelty(tactile, *signed, &sensors);
     let comes_back = novelty < SIMILAR && novelty::has_few_motions(tactile, *signed, &sensors);
     let fit = Fit::new(&parts, recording, novelty, comes_back);
     tick();
-    let (parts, joints) = refine(tactile, *signed, parts, rng);
+    let (parts, joints) = refine(tactile, *signed, parts, numbers, rng);
     tick();
     Ok(Estimate { fit, parts, joints, mapped: sensors, distances })
 }

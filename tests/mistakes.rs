@@ -148,6 +148,19 @@ fn a_mistake_is_one_line_that_says_what_and_where_and_status_2() {
             "estimate times.csv --out s",
             "has no column of a sensor; if its columns are no times, say --time none",
         ),
+        (
+            "estimate word.csv --number min_saving --out s",
+            "invalid value 'min_saving' for '--number <NAME=VALUE>': it must be NAME=VALUE",
+        ),
+        ("estimate word.csv --number min_saving=much --out s", "`much` is not a number"),
+        (
+            "estimate word.csv --number saving=1 --out s",
+            "no number is called `saving`; there are: samples, completion_ridge, ",
+        ),
+        (
+            "estimate word.csv --number min_saving=-1 --out s",
+            "number `min_saving` is -1, but must be 1e-15 to 1e6",
+        ),
         ("estimate word.csv --time c --out s", "has no column `c`; --time takes a name, or a number"),
         ("tree transposed.npy --parts short.csv --out s", "is it transposed?"),
         ("distance transposed.npy --out d.npy", "is it transposed?"),

@@ -8,6 +8,7 @@ use bodyschema::numerics::rng::stream;
 use bodyschema::recording::Recording;
 use bodyschema::settings::{Base, Settings};
 use bodyschema::stages::evaluate::score;
+use bodyschema::stages::numbers::Numbers;
 use bodyschema::stages::sense::Tactile;
 use bodyschema::stages::tree::Truth;
 
@@ -54,7 +55,14 @@ fn one_in(step: usize, Tactile { samples, pressures }: Tactile) -> Tactile {
 
 fn estimated(tactile: Tactile) -> Estimate {
     let levels = Settings::load_over(Some(Base::ESTIMATE), None).unwrap().quantise;
-    estimate(&Recording::new(tactile), &levels, &mut stream(1, 1, "co-motion", 0), &|| ()).unwrap()
+    estimate(
+        &Recording::new(tactile),
+        &levels,
+        &Numbers::default(),
+        &mut stream(1, 1, "co-motion", 0),
+        &|| (),
+    )
+    .unwrap()
 }
 
 #[test]

@@ -16,6 +16,7 @@ use rayon::prelude::*;
 
 use crate::support::folder::Folder;
 use crate::support::small::small_chain;
+use bodyschema::stages::numbers::Numbers;
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -173,7 +174,15 @@ fn verdict(settings: &Settings) -> Fit {
     let agent = read_body(&folder.at("chain.toml")).unwrap().agent;
     let tactile = sense(&agent, &moved(&agent, settings, 1), &settings.sense);
     let levels = Settings::load_over(Some(Base::ESTIMATE), None).unwrap().quantise;
-    estimate(&Recording::new(tactile), &levels, &mut stream(1, 1, "co-motion", 0), &|| ()).unwrap().fit
+    estimate(
+        &Recording::new(tactile),
+        &levels,
+        &Numbers::default(),
+        &mut stream(1, 1, "co-motion", 0),
+        &|| (),
+    )
+    .unwrap()
+    .fit
 }
 
 #[test]

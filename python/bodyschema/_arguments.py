@@ -16,6 +16,7 @@ from ._bodyschema import SEED
 RandomState = Union[None, int, np.random.RandomState, np.random.Generator]
 Progress = Union[None, bool, Callable[[int, int], Any]]
 Settings = Optional[Mapping[str, Mapping[str, Any]]]
+Changed = Optional[Mapping[str, float]]
 
 MAX_JOBS = 1024
 
@@ -65,6 +66,13 @@ def number_of(value: Any, name: str) -> float:
     if not isinstance(value, numbers.Real) or isinstance(value, bool) or not math.isfinite(value):
         raise ValueError(f"{name} must be a finite number, but is {value!r}")
     return float(value)
+
+
+def changed_of(changed: Changed) -> dict[str, float]:
+    """Numbers of the search that are not the default, by their names."""
+    if not isinstance(changed, (Mapping, type(None))):
+        raise ValueError(f"numbers must be a mapping of names to values, but is {changed!r}")
+    return {str(name): number_of(value, f"numbers[{name!r}]") for name, value in (changed or {}).items()}
 
 
 def path_of(value: Any, name: str) -> str:

@@ -10,17 +10,18 @@ SEED: int
 
 _Tell = Callable[[int], Any] | None
 _Said = tuple[bool | None, bool]
+_Asked = tuple[int, dict[str, float]]
 
 def read_touch(path: str, reading: dict[str, Any], jobs: int) -> tuple[NDArray[np.float32], float | None, list[str]]: ...
 def estimate(
-    touch: NDArray[np.float32] | NDArray[np.float64], said: _Said, seed: int, again: tuple[int, bool], jobs: int, progress: _Tell
+    touch: NDArray[np.float32] | NDArray[np.float64], said: _Said, asked: _Asked, again: tuple[int, bool], jobs: int, progress: _Tell
 ) -> dict[str, Any]: ...
 def tree(
     touch: NDArray[np.float32] | NDArray[np.float64],
     labels: list[int],
     rank: int | None,
     said: _Said,
-    seed: int,
+    asked: _Asked,
     jobs: int,
 ) -> dict[str, Any]: ...
 def place(

@@ -10,7 +10,7 @@ from typing import Any, Optional
 import numpy as np
 
 from . import _bodyschema, _picture
-from ._arguments import Progress, RandomState, count_of, jobs_of, number_of, progress_of, seed_of
+from ._arguments import Changed, Progress, RandomState, changed_of, count_of, jobs_of, number_of, progress_of, seed_of
 from ._joints import Joints, joints_of
 from ._reading import RecordingWarning, said_of, touch_of, warn_of_cleaning
 
@@ -181,6 +181,7 @@ def estimate(
     keep_saturated: bool = False,
     force: bool = False,
     repeats: int = 0,
+    numbers: Changed = None,
     random_state: RandomState = None,
     n_jobs: Optional[int] = -1,
     progress: Progress = None,
@@ -208,6 +209,9 @@ def estimate(
     repeats : int, default 0
         Estimate again so many times, at most 1,000, from resampled blocks of time, and count how often sensors, parts and joints are
         found again. Each repeat takes about as long as the estimate. Support takes the parts as given; this does not.
+    numbers : mapping of str to float, optional
+        Numbers that decide which parts and joints are found, where they are not to be the default, such as ``{"min_saving": 0.6}``.
+        docs/shown/numbers lists all of them, and how much they matter.
     random_state : int, NumPy generator or None
         Seed of the bootstrap, from 0 to 2**64 − 1. None is `bodyschema.SEED`, as on the command line.
     n_jobs : int or None, default -1
@@ -253,14 +257,14 @@ def estimate(
     if interval is not None and number_of(interval, "interval") <= 0:
         raise ValueError(f"interval must be a time above 0, in s, but is {interval!r}")
     said = said_of(signed, keep_saturated)
-    seed, jobs = seed_of(random_state), jobs_of(n_jobs)
+    seed, jobs, changed = seed_of(random_state), jobs_of(n_jobs), changed_of(numbers)
     array, read_interval = touch_of(touch)
     interval = read_interval if interval is None else interval
     count = count_of(repeats, "repeats", 0)
     if count > 1000:
         raise ValueError(f"repeats must be at most 1000, but is {count}")
     with progress_of(progress, 3 + count, "estimate") as tell:
-        facts = _bodyschema.estimate(array, said, seed, (count, force), jobs, tell)
+        facts = _bodyschema.estimate(array, said, (seed, changed), (count, force), jobs, tell)
     verdict, sensors, all_sensors = facts["verdict"], facts["sensors"], array.shape[1]
     fit = Fit(verdict, facts["explained"], facts["novelty"], facts["cause"])
     warn_of_cleaning(facts, all_sensors)

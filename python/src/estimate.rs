@@ -1,5 +1,6 @@
 //! Estimate parts and tree of one's own recording, as the command line does.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use bodyschema::estimate::{
@@ -11,6 +12,7 @@ use bodyschema::numerics::rng::stream;
 use bodyschema::recording::{Cleaning, Recording};
 use bodyschema::settings::{Base, Settings};
 use bodyschema::stages::joints::{Joints, Pair, joints};
+use bodyschema::stages::numbers::Numbers;
 use bodyschema::stages::sense::Tactile;
 use numpy::{IntoPyArray, PyArray2};
 use pyo3::prelude::*;
@@ -98,6 +100,16 @@ pub(crate) fn read_touch(py: Python<'_>, path: PathBuf, reading: Reading, jobs: 
 /// Whether negative values count, if it is said, and whether saturated ones do.
 type Said = (Option<bool>, bool);
 
+/// The seed, and the numbers that the user has changed.
+type Asked = (u64, BTreeMap<String, f64>);
+
+/// All numbers, of which some were changed.
+fn numbers_of(changed: &BTreeMap<String, f64>) -> PyResult<Numbers> {
+    let mut numbers = Numbers::default();
+    changed.iter().try_for_each(|(name, value)| numbers.set(name, *value)).map_err(value_error)?;
+    Ok(numbers)
+}
+
 /// Cleans a recording as the user says.
 fn cleaned(tactile: Tactile, (signed, keep_saturated): Said) -> Recording {
     Recording::cleaned(tactile, Cleaning { keep_saturated, signed })
@@ -105,26 +117,27 @@ fn cleaned(tactile: Tactile, (signed, keep_saturated): Said) -> Recording {
 
 /// `bodyschema estimate`, with so many repeats, and whether also where it does not fit.
 #[pyfunction]
-#[pyo3(signature = (touch, said, seed, again, jobs, progress))]
+#[pyo3(signature = (touch, said, asked, again, jobs, progress))]
 pub(crate) fn estimate<'py>(
     py: Python<'py>,
     touch: &Bound<'py, PyAny>,
     said: Said,
-    seed: u64,
+    asked: Asked,
     again: (usize, bool),
     jobs: usize,
     progress: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let (threads, (repeats, force)) = (Threads::start(jobs)?, again);
+    let ((seed, changed), (repeats, force)) = (asked, again);
+    let (threads, numbers) = (Threads::start(jobs)?, numbers_of(&changed)?);
     let tactile = arrays::touch(&threads, touch)?;
     let levels = Settings::load_over(Some(Base::ESTIMATE), None).map_err(value_error)?.quantise;
     let work = move |steps: &Steps| {
         let recording = cleaned(tactile, said);
         let rng = &mut stream(seed, 1, "co-motion", 0);
-        let found = estimate_of(&recording, &levels, rng, &|| steps.tick())?;
+        let found = estimate_of(&recording, &levels, &numbers, rng, &|| steps.tick())?;
         let shows_tree = force || found.fit.fits();
         let again = (repeats > 0 && shows_tree)
-            .then(|| repeats_of(&recording, &found, repeats, rng, &|| steps.tick()));
+            .then(|| repeats_of(&recording, &found, repeats, &numbers, rng, &|| steps.tick()));
         Ok((recording, found, again))
     };
     let outcome = threads.run(py, progress, work)?;
@@ -159,17 +172,18 @@ pub(crate) fn estimate<'py>(
 
 /// `bodyschema tree`: labels of −1 are of no part.
 #[pyfunction]
-#[pyo3(signature = (touch, labels, rank, said, seed, jobs))]
+#[pyo3(signature = (touch, labels, rank, said, asked, jobs))]
 pub(crate) fn tree<'py>(
     py: Python<'py>,
     touch: &Bound<'py, PyAny>,
     labels: Vec<i64>,
     rank: Option<usize>,
     said: Said,
-    seed: u64,
+    asked: Asked,
     jobs: usize,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let threads = Threads::start(jobs)?;
+    let (seed, changed) = asked;
+    let (threads, numbers) = (Threads::start(jobs)?, numbers_of(&changed)?);
     let tactile = arrays::touch(&threads, touch)?;
     if labels.len() != tactile.sensors() {
         return Err(value_error(format!(
@@ -187,7 +201,7 @@ pub(crate) fn tree<'py>(
         let own = recording.of_sensors(&known);
         let feels = own.iter().any(Option::is_some);
         let rng = &mut stream(seed, 1, "co-motion", 0);
-        (feels.then(|| joints(&recording.tactile, recording.signed, &own, rank, rng)), recording)
+        (feels.then(|| joints(&recording.tactile, recording.signed, &own, rank, &numbers, rng)), recording)
     };
     let (found, recording) = threads.run(py, None, work)?;
     let found = found.ok_or_else(|| value_error("no sensor that has a part feels anything"))?;

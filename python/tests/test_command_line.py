@@ -81,6 +81,7 @@ def test_what_is_said_of_a_recording(folder, tmp_path, command, moved):
     for options, arguments in [
         ([], {}),
         (["--keep-saturated"], {"keep_saturated": True}),
+        (["--number", "samples=300", "--number", "monomial_ridge=0.01"], {"numbers": {"samples": 300, "monomial_ridge": 0.01}}),
         (["--signed", "yes"], {"signed": True}),
         (["--signed", "no", "--keep-saturated"], {"signed": False, "keep_saturated": True}),
     ]:

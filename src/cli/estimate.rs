@@ -1,5 +1,6 @@
 //! The subcommand estimate.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -8,7 +9,7 @@ use clap::Args;
 use serde::Serialize;
 
 use super::estimate_report::Shown;
-use super::options::{SettingsAndSeed, TruthFiles};
+use super::options::{NumberOptions, SettingsAndSeed, TruthFiles};
 use super::output::say;
 use super::placement;
 use super::repeats;
@@ -38,6 +39,8 @@ pub(super) struct Estimate {
     file: TouchFile,
     #[command(flatten)]
     common: SettingsAndSeed,
+    #[command(flatten)]
+    numbers: NumberOptions,
     #[command(flatten)]
     truth: TruthFiles,
     /// Position and normal of each sensor: adds body.urdf, parts as boxes (docs/own-data.md)
@@ -95,6 +98,8 @@ struct Summary {
     interval: Option<f64>,
     parts: usize,
     seed: u64,
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    numbers: BTreeMap<String, f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     repeats: Option<usize>,
     revision: &'static str,
@@ -128,6 +133,7 @@ impl Estimate {
     /// Runs the subcommand.
     pub(super) fn run(self) -> Result<ExitCode> {
         let settings = self.common.load_over(Base::ESTIMATE)?;
+        let numbers = self.numbers.all()?;
         let (out, seed) = (&self.out, settings.experiment.seed);
         let all = self.file.read()?;
         let (name, interval, count) = (all.name.clone(), all.interval, all.tactile.sensors());
@@ -149,14 +155,15 @@ impl Estimate {
         warn_of_dropped(&name, count, &recording.dropped);
         let bar = progress(3 + self.repeats, "estimate".to_owned());
         let mut rng = stream(seed, 1, "co-motion", 0);
-        let found = estimate(&recording, &settings.quantise, &mut rng, &|| bar.inc(1))?;
+        let found = estimate(&recording, &settings.quantise, &numbers, &mut rng, &|| bar.inc(1))?;
         let shows_tree = self.force || found.fit.fits();
         let count = if shows_tree { self.repeats as usize } else { 0 };
-        let again =
-            (count > 0).then(|| estimate::repeats(&recording, &found, count, &mut rng, &|| bar.inc(1)));
+        let again = (count > 0)
+            .then(|| estimate::repeats(&recording, &found, count, &numbers, &mut rng, &|| bar.inc(1)));
         bar.finish_and_clear();
         let against = truth.as_ref().map(|truth| AgainstTruth::new(&found, &recording.truth(truth)));
-        write(out, &found, again.as_ref(), &recording, (interval, seed), shows_tree, against)?;
+        let said = Said { interval, seed, numbers: self.numbers.changed(), truth: against };
+        write(out, &found, again.as_ref(), &recording, said, shows_tree)?;
         let sites = sites.filter(|_| shows_tree).map(|sites| recording.of_sensors(&sites));
         let placed = placement::write(out, &recording, &found, sites.as_deref())?;
         say(found.fit.to_string())?;
@@ -229,15 +236,22 @@ fn say_found(
     again.map_or(Ok(()), |again| repeats::print(again, &found.joints.tree))
 }
 
+/// What summary.json has of what the user said.
+struct Said {
+    interval: Option<f64>,
+    seed: u64,
+    numbers: BTreeMap<String, f64>,
+    truth: Option<AgainstTruth>,
+}
+
 /// Writes all files, or those without the tree; then, a tree and a report of before are removed.
 fn write(
     out: &Path,
     found: &estimate::Estimate,
     again: Option<&Repeats>,
     recording: &Recording,
-    (interval, seed): (Option<f64>, u64),
+    said: Said,
     shows_tree: bool,
-    truth: Option<AgainstTruth>,
 ) -> Result<()> {
     let Recording { tactile, sensors, dropped, lost_samples, missing, noisy, signed, .. } = recording;
     let parts = sensors.iter().enumerate().map(|(at, &sensor)| {
@@ -271,12 +285,13 @@ fn write(
         saturated: missing.saturated,
         noisy: *noisy,
         signed: *signed,
-        interval,
+        interval: said.interval,
         parts: found.joints.ranks.len(),
-        seed,
+        seed: said.seed,
+        numbers: said.numbers,
         repeats: again.map(|again| again.count),
         revision: env!("BODYSCHEMA_REVISION"),
-        truth,
+        truth: said.truth,
     };
     Ok(write_text(&out.join("summary.json"), &serde_json::to_string_pretty(&summary)?)?)
 }

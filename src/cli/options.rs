@@ -1,5 +1,6 @@
 //! Define options that several subcommands share, and options that set a setting.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 
 use anyhow::{Result, ensure};
@@ -12,6 +13,7 @@ use crate::analysis::published::Experiment;
 use crate::files::tables::read_truth;
 use crate::settings::{Base, Settings, read_toml};
 use crate::stages::body_map::{MapMethod, MapOf};
+use crate::stages::numbers::Numbers;
 use crate::stages::quantise::Scheme;
 use crate::stages::schema::{EdgeWeight, Keep, Model, Sampler, Start};
 use crate::stages::tree::Truth;
@@ -81,6 +83,37 @@ impl SettingsAndSeed {
         set(&mut settings.experiment.seed, self.seed);
         settings
     }
+}
+
+/// Numbers of the search that are not the default.
+#[derive(Args)]
+pub(super) struct NumberOptions {
+    /// Change a number that decides, such as min_saving=0.6; docs/shown/numbers lists all of them. May be given several times
+    #[arg(long = "number", value_name = "NAME=VALUE", value_parser = name_and_value)]
+    changed: Vec<(String, f64)>,
+}
+
+impl NumberOptions {
+    /// All numbers, of which the user may have changed some.
+    pub(super) fn all(&self) -> Result<Numbers> {
+        let mut numbers = Numbers::default();
+        for (name, value) in &self.changed {
+            numbers.set(name, *value)?;
+        }
+        Ok(numbers)
+    }
+
+    /// Those that the user has changed, by their names.
+    pub(super) fn changed(&self) -> BTreeMap<String, f64> {
+        self.changed.iter().cloned().collect()
+    }
+}
+
+/// A number and its value.
+fn name_and_value(text: &str) -> Result<(String, f64), String> {
+    let (name, value) = text.split_once('=').ok_or("it must be NAME=VALUE")?;
+    let value = value.trim().parse().map_err(|_| format!("`{value}` is not a number"))?;
+    Ok((name.trim().to_owned(), value))
 }
 
 /// The truth, to compare with.

@@ -7,7 +7,7 @@ use anyhow::{Result, ensure};
 use clap::Args;
 use serde::Serialize;
 
-use super::options::{TruthFiles, paper, with_default};
+use super::options::{NumberOptions, TruthFiles, paper, with_default};
 use super::output::say;
 use super::touch::TouchFile;
 use crate::files::graph::{Link, Node, dot, graphml};
@@ -36,6 +36,8 @@ pub(super) struct Tree {
     #[arg(long, value_name = "S", help = with_default("Master seed of all random numbers", paper().experiment.seed))]
     seed: Option<u64>,
     #[command(flatten)]
+    numbers: NumberOptions,
+    #[command(flatten)]
     truth: TruthFiles,
     /// Folder to write to
     #[arg(long, value_name = "DIR")]
@@ -62,7 +64,7 @@ struct EdgeRow {
 impl Tree {
     /// Runs the subcommand.
     pub(super) fn run(self) -> Result<ExitCode> {
-        let out = &self.out;
+        let (out, numbers) = (&self.out, self.numbers.all()?);
         let all = self.file.read()?;
         let (name, count) = (all.name.clone(), all.tactile.sensors());
         let parts = read_parts(&self.parts, count)?;
@@ -78,7 +80,7 @@ impl Tree {
         prepare_folder(out)?;
         let mut rng = stream(self.seed.unwrap_or(paper().experiment.seed), 1, "co-motion", 0);
         let rank = self.components.map(|k| k as usize);
-        let found = joints(&recording.tactile, recording.signed, &own, rank, &mut rng);
+        let found = joints(&recording.tactile, recording.signed, &own, rank, &numbers, &mut rng);
         write(out, &found, &labels)?;
         print(&found, &labels)?;
         if let Some(truth) = truth {

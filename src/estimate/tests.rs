@@ -72,6 +72,6 @@ fn sensors_that_rest_a_little_below_0_feel_nothing_there() {
     let levels =
         crate::settings::Settings::load_over(Some(crate::settings::Base::ESTIMATE), None).unwrap().quantise;
     let rng = &mut crate::numerics::rng::stream(1, 1, "co-motion", 0);
-    let found = estimate(&recording, &levels, rng, &|| ()).unwrap();
+    let found = estimate(&recording, &levels, &Numbers::default(), rng, &|| ()).unwrap();
     assert!(found.parts.residuals.iter().all(|residual| residual.is_finite()));
 }

@@ -37,6 +37,7 @@ pub mod evaluate;
 pub mod joints;
 pub mod mixture;
 pub mod noise;
+pub mod numbers;
 pub mod placement;
 pub mod quantise;
 pub mod rigid_parts;

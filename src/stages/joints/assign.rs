@@ -12,12 +12,11 @@ use rayon::prelude::*;
 use super::cross_moments::{CrossMoments, Extended};
 use super::information::of_speeds;
 use super::tree::maximum_spanning_tree;
+use crate::stages::numbers::Numbers;
 use crate::stages::rigid_parts::MotionSubspace;
 
-/// Information, in nats, that the tree must gain by an assignment.
-const MIN_GAIN: f64 = 0.025;
-/// The same by a move from one part to another.
-const MIN_MOVE_GAIN: f64 = 0.005;
+/// Information, in nats, that the tree must gain by moving a cluster from one part to another, as a share of what an assignment must gain: one in so many.
+const MOVE: f64 = 5.0;
 /// Most times that moves of all clusters are tried.
 const MAX_SWEEPS: usize = 3;
 
@@ -25,18 +24,19 @@ const MAX_SWEEPS: usize = 3;
 /// speeds, in nats; 0 if there is nothing to assign.
 ///
 /// `pairs` are clusters that may be the two ends of one part, which gain most together. Greedily, the cluster or pair by which
-/// the tree gains most information is assigned, as long as that is more than [`MIN_GAIN`]. Then each is tried on the other parts.
+/// the tree gains most information is assigned, as long as that is more than `min_gain`. Then each is tried on the other parts.
 pub(super) fn assign(
     parts: &[MotionSubspace],
     unassigned: &[MotionSubspace],
     pairs: &[(usize, usize)],
     samples: usize,
+    numbers: &Numbers,
 ) -> (Vec<Option<usize>>, f64) {
     let mut assigned = vec![None; unassigned.len()];
     if parts.len() < 2 || unassigned.is_empty() {
         return (assigned, 0.0);
     }
-    let moments = CrossMoments::new(parts, unassigned, samples);
+    let moments = CrossMoments::new(parts, unassigned, samples, numbers);
     let mut tree = Assignment::new(&moments);
     let ends =
         (0..unassigned.len()).map(|cluster| vec![cluster]).chain(pairs.iter().map(|&(a, b)| vec![a, b]));
@@ -47,7 +47,7 @@ pub(super) fn assign(
     loop {
         let found: Vec<f64> = trials.par_iter().map(|trial| tree.information_with(trial)).collect();
         let Some((at, information)) = largest(found.into_iter()) else { break };
-        if information <= tree.information + MIN_GAIN {
+        if information <= tree.information + numbers.min_gain {
             break;
         }
         let best = trials.swap_remove(at);
@@ -78,10 +78,10 @@ pub(super) fn assign(
 }
 
 /// Information, in nats, that the tree over the other parts gains if one is merged with the part that gains most by it.
-pub(super) fn gain(parts: &[MotionSubspace], at: usize, samples: usize) -> f64 {
+pub(super) fn gain(parts: &[MotionSubspace], at: usize, samples: usize, numbers: &Numbers) -> f64 {
     let others: Vec<MotionSubspace> =
         parts.iter().enumerate().filter(|(place, _)| *place != at).map(|(_, own)| own.clone()).collect();
-    let moments = CrossMoments::new(&others, &parts[at..=at], samples);
+    let moments = CrossMoments::new(&others, &parts[at..=at], samples, numbers);
     let tree = Assignment::new(&moments);
     let with = |part: usize| tree.information_with(&tree.trial(vec![0], part)) - tree.information;
     (0..others.len()).into_par_iter().map(with).reduce(|| f64::NEG_INFINITY, f64::max)
@@ -93,9 +93,9 @@ fn largest(values: impl Iterator<Item = f64>) -> Option<(usize, f64)> {
 }
 
 /// What the edges of the maximum spanning tree say of joint speeds, in nats.
-fn information(correlations: &DMatrix<f64>) -> f64 {
+fn information(correlations: &DMatrix<f64>, negligible: f64) -> f64 {
     let edges = maximum_spanning_tree(correlations);
-    edges.iter().map(|edge| of_speeds(correlations[(edge.child, edge.parent)])).sum()
+    edges.iter().map(|edge| of_speeds(correlations[(edge.child, edge.parent)], negligible)).sum()
 }
 
 /// Clusters that are tried on a part.
@@ -126,7 +126,12 @@ impl<'a> Assignment<'a> {
             correlations[(a, b)] = moments.correlation(&parts[a], &parts[b]);
             correlations[(b, a)] = correlations[(a, b)];
         }
-        Self { moments, parts, information: information(&correlations), correlations }
+        Self {
+            moments,
+            parts,
+            information: information(&correlations, moments.numbers.negligible),
+            correlations,
+        }
     }
 
     fn trial(&self, clusters: Vec<usize>, part: usize) -> Trial {
@@ -149,14 +154,19 @@ impl<'a> Assignment<'a> {
         (0..self.parts.len()).map(with).collect()
     }
 
+    /// The information of the tree over parts with these correlations.
+    fn information_of(&self, correlations: &DMatrix<f64>) -> f64 {
+        information(correlations, self.moments.numbers.negligible)
+    }
+
     /// The information of the tree with a trial.
     fn information_with(&self, trial: &Trial) -> f64 {
-        information(&replaced(&self.correlations, trial.part, &trial.correlations))
+        self.information_of(&replaced(&self.correlations, trial.part, &trial.correlations))
     }
 
     fn accept(&mut self, trial: Trial) {
         self.correlations = replaced(&self.correlations, trial.part, &trial.correlations);
-        self.information = information(&self.correlations);
+        self.information = self.information_of(&self.correlations);
         self.parts[trial.part] = trial.extended;
     }
 
@@ -173,8 +183,9 @@ impl<'a> Assignment<'a> {
         };
         let others: Vec<usize> = (0..self.parts.len()).filter(|part| *part != from).collect();
         let mut found: Vec<(usize, Extended, DMatrix<f64>)> = others.into_par_iter().map(moved).collect();
-        let best = largest(found.iter().map(|(.., correlations)| information(correlations)));
-        let Some((at, information)) = best.filter(|(_, sum)| *sum > self.information + MIN_MOVE_GAIN) else {
+        let least = self.moments.numbers.min_gain / MOVE;
+        let best = largest(found.iter().map(|(.., correlations)| self.information_of(correlations)));
+        let Some((at, information)) = best.filter(|(_, sum)| *sum > self.information + least) else {
             return from;
         };
         let (part, extended, correlations) = found.swap_remove(at);

@@ -3,8 +3,6 @@
 
 use nalgebra::{DMatrix, DVector};
 
-/// What is added to the variances of monomials, as a share of their mean: forms of hardly any variance are noise.
-const RIDGE: f64 = 1e-5;
 /// Iterations in which forms are made nowhere negative, and regressed on each other.
 const ITERATIONS: usize = 6;
 
@@ -22,13 +20,13 @@ pub(super) struct QuadraticForms {
 
 impl QuadraticForms {
     /// From the moments of these monomials; `None` if the part feels nothing.
-    pub(super) fn new(pairs: Vec<(usize, usize)>, mut moments: DMatrix<f64>) -> Option<Self> {
+    pub(super) fn new(pairs: Vec<(usize, usize)>, mut moments: DMatrix<f64>, ridge: f64) -> Option<Self> {
         let rank = pairs.iter().map(|pair| pair.1 + 1).max().unwrap_or(0);
         let mut scales = vec![0.0; rank];
         for (at, (i, _)) in pairs.iter().enumerate().filter(|(_, (i, j))| i == j) {
             scales[*i] = moments[(at, at)].max(0.0).sqrt().sqrt();
         }
-        let factor = factor_with_ridge(&mut moments, RIDGE)?;
+        let factor = factor_with_ridge(&mut moments, ridge)?;
         Some(Self { pairs, scales, moments, factor })
     }
 

@@ -7,6 +7,7 @@ use rayon::prelude::*;
 
 use super::correlation::{QuadraticForms, common};
 use super::moments::{monomials, scales};
+use crate::stages::numbers::Numbers;
 use crate::stages::rigid_parts::{MotionSubspace, stratified};
 
 /// Samples that are used, spread over all.
@@ -38,11 +39,18 @@ pub(super) struct CrossMoments {
     /// Ranks of the motions of parts, and of clusters.
     parts: Vec<usize>,
     clusters: Vec<usize>,
+    /// The numbers that decide.
+    pub numbers: Numbers,
 }
 
 impl CrossMoments {
     /// Of the motions of parts and of unassigned clusters at the same T samples.
-    pub(super) fn new(parts: &[MotionSubspace], unassigned: &[MotionSubspace], samples: usize) -> Self {
+    pub(super) fn new(
+        parts: &[MotionSubspace],
+        unassigned: &[MotionSubspace],
+        samples: usize,
+        numbers: &Numbers,
+    ) -> Self {
         let chosen: Vec<usize> = stratified(samples, MAX_SAMPLES).collect();
         let scales = scales(parts, samples);
         let mut values: Vec<f64> = Vec::new();
@@ -70,7 +78,7 @@ impl CrossMoments {
         let with_parts = products(&monomials, of_part.last().map_or(0, |last| last.end));
         let ranks = |motions: &[MotionSubspace]| motions.iter().map(|motion| motion.rank).collect();
         let (parts, clusters) = (ranks(parts), ranks(unassigned));
-        Self { monomials, with_parts, of_part, of_clusters, of_both, parts, clusters }
+        Self { monomials, with_parts, of_part, of_clusters, of_both, parts, clusters, numbers: *numbers }
     }
 
     /// Number of parts.
@@ -81,7 +89,7 @@ impl CrossMoments {
     /// A part with these clusters.
     pub(super) fn extended(&self, part: usize, clusters: Vec<usize>) -> Extended {
         let (places, pairs) = self.places(part, &clusters);
-        let forms = QuadraticForms::new(pairs, self.select(&places, &places));
+        let forms = QuadraticForms::new(pairs, self.select(&places, &places), self.numbers.monomial_ridge);
         Extended { clusters, places, forms }
     }
 

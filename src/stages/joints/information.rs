@@ -14,24 +14,19 @@
 use nalgebra::DMatrix;
 
 use super::correlation::{Common, factor_with_ridge, whitened};
+use crate::stages::numbers::Numbers;
 
-/// Unexplained share of a joint's squared speed below which a joint tells hardly any more.
-const NEGLIGIBLE: f64 = 1e-3;
-/// Samples at which all that two motions share has half of its weight, beside the speed of their joint.
-const HALF_WEIGHT: f64 = 1e4;
-/// What is added to the variances of components, as a share of their mean: those of hardly any variance are noise.
-const RIDGE: f64 = 1e-3;
-
-/// Of squared joint speeds of this correlation, 0 to 1: −½ ln(1 − r²), but for a share that is negligible; 0 if they have nothing in common.
-pub(super) fn of_speeds(correlation: f64) -> f64 {
-    -0.5 * ((1.0 - correlation * correlation + NEGLIGIBLE) / (1.0 + NEGLIGIBLE)).ln()
+/// Of squared joint speeds of this correlation, 0 to 1: −½ ln(1 − r²), but for a share that is `negligible`; 0 if they have nothing in common.
+pub(super) fn of_speeds(correlation: f64, negligible: f64) -> f64 {
+    -0.5 * ((1.0 - correlation * correlation + negligible) / (1.0 + negligible)).ln()
 }
 
 /// Of a joint, from what the quadratic forms of the motions of its parts have in common over so many samples, and their linear mutual
 /// information, nats.
-pub(super) fn of_joint(common: &Common, linear: f64, samples: usize) -> f64 {
+pub(super) fn of_joint(common: &Common, linear: f64, samples: usize, numbers: &Numbers) -> f64 {
+    let of_speeds = |correlation| of_speeds(correlation, numbers.negligible);
     let quadratic: f64 = common.canonical.iter().copied().map(of_speeds).sum();
-    let weight = samples as f64 / (samples as f64 + HALF_WEIGHT);
+    let weight = samples as f64 / (samples as f64 + numbers.half_weight);
     of_speeds(common.correlation) + weight * (linear + quadratic)
 }
 
@@ -43,8 +38,8 @@ pub(super) struct Gaussian {
 
 impl Gaussian {
     /// From sums over samples of the products of its components, k × k; `None` if the part feels nothing.
-    pub(super) fn new(mut moments: DMatrix<f64>) -> Option<Self> {
-        let factor = factor_with_ridge(&mut moments, RIDGE)?;
+    pub(super) fn new(mut moments: DMatrix<f64>, ridge: f64) -> Option<Self> {
+        let factor = factor_with_ridge(&mut moments, ridge)?;
         Some(Self { factor })
     }
 }

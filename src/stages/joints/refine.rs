@@ -12,6 +12,7 @@ use rayon::prelude::*;
 use super::assign::{assign, gain};
 use super::tree::{Joints, tree_of_motions};
 use crate::numerics::partition::{named_by_appearance, sizes};
+use crate::stages::numbers::Numbers;
 use crate::stages::rigid_parts::{
     MotionSubspace, RigidParts, Roots, opposite_pairs, similar, stratified, typical_size,
 };
@@ -20,9 +21,6 @@ use crate::stages::tree::Edge;
 
 /// Samples that similarity is computed from, spread over all.
 const MAX_SAMPLES: usize = 2000;
-/// Information, in nats, that the tree must gain by merging a small part with another, so that the part is spurious. It must gain as much again
-/// if pieces of it go to several parts instead, for each of these but one: more pieces always gain something.
-const SPURIOUS: f64 = 0.5;
 /// Rank from which on a part is no piece of another: a cylinder feels its motion but its spin.
 const WHOLE_RANK: usize = 5;
 /// Unassigned clusters that are tried on parts, the largest: memory grows with the square of their number.
@@ -34,23 +32,29 @@ type Members = BTreeMap<usize, Vec<usize>>;
 /// The parts with each unassigned cluster assigned, and how they are joined.
 ///
 /// A cluster is assigned to the part that the joints tell; if none does, each of its sensors to the part with the smallest
-/// residual. In: M × T pressures, of any sign, whether negative ones are signal (`signed`), and the parts and unassigned clusters of
-/// their sensors. Out: parts without unassigned clusters, named by appearance, and their tree.
+/// residual. In: M × T pressures, of any sign, whether negative ones are signal (`signed`), the parts and unassigned clusters of
+/// their sensors, and the `numbers` that decide. Out: parts without unassigned clusters, named by appearance, and their tree.
 pub(crate) fn refine(
     tactile: &Tactile,
     signed: bool,
     parts: RigidParts,
+    numbers: &Numbers,
     rng: &mut impl Rng,
 ) -> (RigidParts, Joints) {
-    let (refined, names, motions) = refined(tactile, signed, parts);
-    let joints = Joints::of_motions(&names, &motions, tactile.samples, rng);
+    let (refined, names, motions) = refined(tactile, signed, parts, numbers);
+    let joints = Joints::of_motions(&names, &motions, tactile.samples, numbers, rng);
     (refined, joints)
 }
 
 /// The part of each sensor and the tree of [`refine`], without the support of its edges.
-pub(crate) fn refine_tree(tactile: &Tactile, signed: bool, parts: RigidParts) -> (Vec<usize>, Vec<Edge>) {
-    let (refined, names, motions) = refined(tactile, signed, parts);
-    (refined.labels, tree_of_motions(&names, &motions, tactile.samples))
+pub(crate) fn refine_tree(
+    tactile: &Tactile,
+    signed: bool,
+    parts: RigidParts,
+    numbers: &Numbers,
+) -> (Vec<usize>, Vec<Edge>) {
+    let (refined, names, motions) = refined(tactile, signed, parts, numbers);
+    (refined.labels, tree_of_motions(&names, &motions, tactile.samples, numbers))
 }
 
 /// The parts with each unassigned cluster assigned, and the label of each, rising, with its motion.
@@ -58,8 +62,9 @@ fn refined(
     tactile: &Tactile,
     signed: bool,
     mut parts: RigidParts,
+    numbers: &Numbers,
 ) -> (RigidParts, Vec<usize>, Vec<MotionSubspace>) {
-    let mut refinement = Refinement::new(tactile, signed);
+    let mut refinement = Refinement::new(tactile, signed, numbers);
     let mut assigned = refinement.assigned(&parts);
     while let Some(spurious) = refinement.spurious(&parts, &assigned) {
         (parts, assigned) = refinement.dissolved(&parts, spurious);
@@ -124,13 +129,21 @@ struct Refinement<'a> {
     roots: Roots,
     /// Motions by their sensors: most stay the same from one iteration to the next.
     known: BTreeMap<Vec<usize>, MotionSubspace>,
+    /// The numbers that decide.
+    numbers: Numbers,
 }
 
 impl<'a> Refinement<'a> {
-    fn new(tactile: &'a Tactile, signed: bool) -> Self {
+    fn new(tactile: &'a Tactile, signed: bool, numbers: &Numbers) -> Self {
         let series: Vec<&[f32]> = tactile.series().collect();
         let samples: Vec<usize> = stratified(tactile.samples, MAX_SAMPLES).collect();
-        Self { roots: Roots::at(&series, &samples, signed), signed, series, known: BTreeMap::new() }
+        Self {
+            roots: Roots::at(&series, &samples, signed),
+            signed,
+            series,
+            known: BTreeMap::new(),
+            numbers: *numbers,
+        }
     }
 
     /// T.
@@ -164,7 +177,7 @@ impl<'a> Refinement<'a> {
         let of_clusters = self.motions(&parts, &clusters);
         let members: Vec<&[usize]> = clusters.values().map(Vec::as_slice).collect();
         let pairs = opposite_pairs(&self.roots, &members);
-        let (found, information) = assign(&motions, &of_clusters, &pairs, self.samples());
+        let (found, information) = assign(&motions, &of_clusters, &pairs, self.samples(), &self.numbers);
         if names.is_empty() {
             names.extend(clusters.keys());
             motions.extend(of_clusters);
@@ -193,9 +206,9 @@ impl<'a> Refinement<'a> {
             own[*at] < small && motions[*at].rank < WHOLE_RANK && !parts.unassigned.contains(&names[*at])
         };
         let places = if names.len() > 2 { 0..names.len() } else { 0..0 };
-        let gains = places.filter(can_be).map(|at| (gain(motions, at, self.samples()), at));
+        let gains = places.filter(can_be).map(|at| (gain(motions, at, self.samples(), &self.numbers), at));
         let most = gains.reduce(|most, other| if other.0 > most.0 { other } else { most });
-        most.filter(|(gain, _)| *gain > SPURIOUS).map(|(_, at)| names[at])
+        most.filter(|(gain, _)| *gain > self.numbers.spurious).map(|(_, at)| names[at])
     }
 
     /// The parts without one, and the same with its sensors assigned: as one cluster, whose motion they tell best together, or, if the tree
@@ -211,7 +224,7 @@ impl<'a> Refinement<'a> {
         let pieces = unassigned(parts, part, &pieces);
         let of_pieces = self.assigned(&pieces);
         let takers: BTreeSet<usize> = own.iter().map(|&sensor| of_pieces.parts.labels[sensor]).collect();
-        let least = SPURIOUS * (takers.len() as f64 - 1.0);
+        let least = self.numbers.spurious * (takers.len() as f64 - 1.0);
         if of_pieces.information > of_whole.information + least {
             (pieces, of_pieces)
         } else {

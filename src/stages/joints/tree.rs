@@ -8,6 +8,7 @@ use rand::{Rng, RngExt};
 use rayon::prelude::*;
 
 use super::moments::{Dependence, Moments};
+use crate::stages::numbers::Numbers;
 use crate::stages::rigid_parts::{MAX_RANK, MotionSubspace, motions_of_parts};
 use crate::stages::sense::Tactile;
 use crate::stages::tree::{Edge, prim};
@@ -63,9 +64,10 @@ impl Joints {
         labels: &[usize],
         motions: &[MotionSubspace],
         samples: usize,
+        numbers: &Numbers,
         rng: &mut impl Rng,
     ) -> Self {
-        let moments = Moments::new(motions, samples, blocks(samples));
+        let moments = Moments::new(motions, samples, blocks(samples), numbers);
         let Dependence { correlations, information } = moments.dependence();
         let tree = maximum_spanning_tree(&information);
         let mut times_joined = DMatrix::<usize>::zeros(labels.len(), labels.len());
@@ -100,7 +102,7 @@ impl Joints {
 ///
 /// In: M × T pressures of any sign, NaN where one is missing; whether negative ones are signal (`signed`), not noise about 0; and for
 /// each of the M sensors the label of its part, any number, or `None` for a sensor to be left out. `rank`, 1 to 6, is the rank of the
-/// motion subspace of each part, at most one less than it has sensors; without it, the data choose one for each. Out: the tree, and for each pair of parts their correlation and the bootstrap support of an edge between them. The same
+/// motion subspace of each part, at most one less than it has sensors; without it, the data choose one for each. `numbers` are those that decide. Out: the tree, and for each pair of parts their correlation and the bootstrap support of an edge between them. The same
 /// input and state of `rng` give the same bytes, whatever the number of threads.
 ///
 /// # Panics
@@ -110,21 +112,28 @@ pub fn joints(
     signed: bool,
     labels: &[Option<usize>],
     rank: Option<usize>,
+    numbers: &Numbers,
     rng: &mut impl Rng,
 ) -> Joints {
-    let (parts, motions) = parts_and_motions(tactile, signed, labels, rank);
-    Joints::of_motions(&parts, &motions, tactile.samples, rng)
+    let (parts, motions) = parts_and_motions(tactile, signed, labels, rank, numbers);
+    Joints::of_motions(&parts, &motions, tactile.samples, numbers, rng)
 }
 
 /// The tree of [`joints`] without its support: of a short recording, the bootstrap takes most of the time.
 pub(crate) fn joint_tree(tactile: &Tactile, signed: bool, labels: &[Option<usize>]) -> Vec<Edge> {
-    let (parts, motions) = parts_and_motions(tactile, signed, labels, None);
-    tree_of_motions(&parts, &motions, tactile.samples)
+    let numbers = &Numbers::default();
+    let (parts, motions) = parts_and_motions(tactile, signed, labels, None, numbers);
+    tree_of_motions(&parts, &motions, tactile.samples, numbers)
 }
 
 /// The tree over parts with these labels, rising, from their motions at the same samples, without its support.
-pub(super) fn tree_of_motions(labels: &[usize], motions: &[MotionSubspace], samples: usize) -> Vec<Edge> {
-    let moments = Moments::new(motions, samples, blocks(samples));
+pub(super) fn tree_of_motions(
+    labels: &[usize],
+    motions: &[MotionSubspace],
+    samples: usize,
+    numbers: &Numbers,
+) -> Vec<Edge> {
+    let moments = Moments::new(motions, samples, blocks(samples), numbers);
     labelled(&maximum_spanning_tree(&moments.dependence().information), labels)
 }
 
@@ -134,10 +143,11 @@ fn parts_and_motions(
     signed: bool,
     labels: &[Option<usize>],
     rank: Option<usize>,
+    numbers: &Numbers,
 ) -> (Vec<usize>, Vec<MotionSubspace>) {
     assert_eq!(labels.len(), tactile.sensors(), "a part for each sensor");
     assert!(rank.is_none_or(|rank| (1..=MAX_RANK).contains(&rank)), "a rank from 1 to {MAX_RANK}");
-    motions_of_parts(tactile, signed, labels, rank).into_iter().unzip()
+    motions_of_parts(tactile, signed, labels, rank, numbers).into_iter().unzip()
 }
 
 /// Number of blocks that so many samples are cut into, to be drawn with replacement.

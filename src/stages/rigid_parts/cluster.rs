@@ -15,6 +15,7 @@ use super::log_determinant::log_determinant;
 use super::memory::{Memory, key};
 use super::roots::{Roots, columns, product};
 use super::stratified::stratified;
+use crate::stages::numbers::Numbers;
 
 /// Sensors of a cluster that its motion is learned from, spread over all.
 pub(super) const MAX_SENSORS: usize = 48;
@@ -23,24 +24,13 @@ pub(super) const ITERATIONS: [usize; 2] = [8, 24];
 /// Iterations in which c of other sensors is found from given w: where completed roots start it, and from nothing. A sensor that feels
 /// something at few samples takes the most.
 const LOADING_ITERATIONS: [usize; 2] = [2, 30];
-/// Weight of a completed root, in both: so small that it decides only where informative roots do not.
-const WEIGHTS: [f64; 2] = [3e-3, 3e-4];
 /// Momentum of these iterations: the least and the largest, and its factors while the residual falls and when it grew.
 const MOMENTUM: [f64; 2] = [0.5, 0.98];
 const PACE: [f64; 2] = [1.1, 0.5];
-/// The least tolerance of the search: what the iterations leave. A separation, which iterates longer, goes below.
-pub(super) const SEARCH_TOLERANCE: f64 = 3e-4;
-/// Residual variance, in units of the tolerance, up to which more iterations may explain a cluster. A sensor that is in no cluster may
-/// leave as much, which with noise is more than any residual.
-pub(super) const MAX_OPEN: f64 = 30.0;
 /// Residual variance at which more iterations say nothing new.
 pub(super) const ROUNDING: f64 = 1e-11;
-/// Degrees of freedom of its residual that a part must have per sample. With fewer, any sensors fit.
-pub(super) const MIN_FREEDOM: f64 = 1.0;
 /// Leverage above which a sensor spans a component alone: all others together tell less than a tenth of it.
 const LEVERAGE: f64 = 0.9;
-/// How many times the tolerance the variance of a component is at least.
-const PRESENT: f64 = 20.0;
 
 pub(super) mod evidence;
 mod minimum;
@@ -57,8 +47,28 @@ pub(super) struct Felt {
     pub tolerance: f64,
     /// Iterations in which the motion of a cluster is learned, and more where it is in doubt whether one motion explains it.
     pub iterations: [usize; 2],
+    /// The numbers that decide.
+    pub numbers: Numbers,
     /// Motions that were learned.
     pub memory: Memory<Learned>,
+}
+
+impl Felt {
+    /// The largest residual variance that one motion explains.
+    pub(super) fn explained(&self) -> f64 {
+        self.numbers.max_residual * self.tolerance
+    }
+
+    /// Weight of a completed root in the first iterations, and in more.
+    pub(super) fn weights(&self) -> [f64; 2] {
+        [self.numbers.completed_weight, self.numbers.completed_weight_in_the_end]
+    }
+
+    /// What a root that is not felt tells of w, as a share of what one tells that is felt: all at the least tolerance of the search or
+    /// below, since it is completed as exactly, and next to nothing with noise.
+    fn told_by_censored(&self) -> f64 {
+        f64::min(1.0, self.numbers.min_tolerance / self.tolerance).powi(2)
+    }
 }
 
 /// What is learned of a cluster. What completes its roots follows from the loadings and the motion.
@@ -102,7 +112,7 @@ impl Cluster {
     pub(super) fn new(felt: &Felt, sensors: Vec<usize>) -> Self {
         let mut best = Self::of_rank(felt, sensors, MAX_RANK);
         loop {
-            let present = best.present(felt.tolerance);
+            let present = best.present(felt, felt.tolerance);
             if present == 0 || present >= best.rank() {
                 return best;
             }
@@ -134,7 +144,7 @@ impl Cluster {
             description_length: 0.0,
             is_learned: false,
         };
-        cluster.learn(felt, felt.iterations[0], WEIGHTS[0]);
+        cluster.learn(felt, felt.iterations[0], felt.weights()[0]);
         cluster
     }
 
@@ -171,9 +181,9 @@ impl Cluster {
     /// Learns the motion in more iterations.
     pub(super) fn learn_longer(&mut self, felt: &Felt) {
         if !self.is_learned || self.variance() > felt.tolerance {
-            self.learn(felt, felt.iterations[1], WEIGHTS[1]);
+            self.learn(felt, felt.iterations[1], felt.weights()[1]);
             // Beyond, it is of several parts.
-            let most = MAX_OPEN * felt.tolerance.max(SEARCH_TOLERANCE);
+            let most = felt.numbers.max_open * felt.tolerance.max(felt.numbers.min_tolerance);
             if self.variance() > felt.tolerance && self.variance() <= most {
                 self.leave_minimum(felt);
             }
@@ -200,14 +210,16 @@ impl Cluster {
     }
 
     /// How many components are more than residual.
-    pub(super) fn present(&self, tolerance: f64) -> usize {
-        self.components.iter().filter(|variance| **variance > PRESENT * tolerance).count()
+    pub(super) fn present(&self, felt: &Felt, tolerance: f64) -> usize {
+        let least = felt.numbers.min_component * tolerance;
+        self.components.iter().filter(|variance| **variance > least).count()
     }
 
-    /// Whether two clusters have components in common: their union has fewer than both. What is below [`SEARCH_TOLERANCE`] may be an error
+    /// Whether two clusters have components in common: their union has fewer than both. What is below `min_tolerance` may be an error
     /// of the model, and is no component.
-    pub(super) fn have_common(a: &Self, b: &Self, union: &Self, tolerance: f64) -> bool {
-        let present = |own: &Self| own.present(tolerance.max(SEARCH_TOLERANCE));
+    pub(super) fn have_common(a: &Self, b: &Self, union: &Self, felt: &Felt) -> bool {
+        let tolerance = felt.tolerance.max(felt.numbers.min_tolerance);
+        let present = |own: &Self| own.present(felt, tolerance);
         present(union) < present(a) + present(b)
     }
 
@@ -239,23 +251,23 @@ impl Cluster {
 
     /// Residual variance of the informative roots of each sensor by this motion.
     pub(super) fn residuals(&self, felt: &Felt) -> Vec<f64> {
-        self.residuals_among(&felt.roots, felt.completed.as_ref())
+        self.residuals_among(felt, &felt.roots, felt.completed.as_ref())
     }
 
     /// The same of some sensors, in their order.
     pub(super) fn residuals_of(&self, felt: &Felt, sensors: &[usize]) -> Vec<f64> {
         let completed = columns(&felt.completed, sensors);
-        self.residuals_among(&felt.roots.select_as_they_are(sensors), completed.as_ref())
+        self.residuals_among(felt, &felt.roots.select_as_they_are(sensors), completed.as_ref())
     }
 
     /// The same of sensors with these roots, and what completes them.
-    fn residuals_among(&self, roots: &Roots, completed: MatRef<'_, f64>) -> Vec<f64> {
+    fn residuals_among(&self, felt: &Felt, roots: &Roots, completed: MatRef<'_, f64>) -> Vec<f64> {
         let squares = product(self.motion.transpose(), self.motion.as_ref());
         let products = product(completed.transpose(), self.motion.as_ref());
         let mut loadings = solved(&squares, &products);
         let als = Als::new(roots.values.as_ref(), &roots.thresholds);
         let with_completed =
-            Als::new(roots.values.as_ref(), &roots.thresholds).with_completed(completed, WEIGHTS[0]);
+            Als::new(roots.values.as_ref(), &roots.thresholds).with_completed(completed, felt.weights()[0]);
         for _ in 0..LOADING_ITERATIONS[0] {
             with_completed.update_loadings(loadings.as_mut(), &self.motion);
         }
@@ -298,7 +310,7 @@ impl Cluster {
             (self.loadings, self.motion, self.components) = (loadings, motion, components);
             (self.residual, self.freedom) = (residual, freedom);
             self.description_length = description_length;
-        } else if self.alternate(&own, felt.tolerance, iterations, weight) {
+        } else if self.alternate(felt, &own, iterations, weight) {
             let (loadings, motion) = (self.loadings.clone(), self.motion.clone());
             let components = self.components.clone();
             let Self { residual, freedom, description_length, .. } = *self;
@@ -309,7 +321,7 @@ impl Cluster {
 
     /// Alternates least squares with momentum, which is lost when the residual grows. Returns whether all iterations were made, so that the
     /// last motion completes the roots.
-    fn alternate(&mut self, own: &Roots, tolerance: f64, iterations: usize, weight: f64) -> bool {
+    fn alternate(&mut self, felt: &Felt, own: &Roots, iterations: usize, weight: f64) -> bool {
         let (values, thresholds) = (own.values.as_ref(), &own.thresholds);
         let plain = Als::new(values, thresholds);
         let Self { loadings, motion, completed, .. } = self;
@@ -324,7 +336,7 @@ impl Cluster {
             let mut next = loadings.clone();
             als.update_loadings(next.as_mut(), motion);
             let [residual, freedom] = plain.residual(next.as_ref(), motion);
-            if tolerance < SEARCH_TOLERANCE && residual <= ROUNDING * freedom {
+            if felt.tolerance < felt.numbers.min_tolerance && residual <= ROUNDING * freedom {
                 *loadings = next;
                 is_whole = false;
                 break;
@@ -347,16 +359,17 @@ impl Cluster {
         let [residual, freedom] = plain.residual(loadings.as_ref(), motion);
         let whitened = whitened(loadings, motion);
         (self.residual, self.freedom, self.components) = (residual, freedom, components(&whitened));
-        self.description_length = self.description_length(own, &whitened, tolerance);
+        self.description_length = self.description_length(felt, own, &whitened);
         is_whole
     }
 
     /// In: the roots of the representatives, and their c for which each component of w has a variance of 1.
-    fn description_length(&self, roots: &Roots, whitened: &Mat<f64>, tolerance: f64) -> f64 {
+    fn description_length(&self, felt: &Felt, roots: &Roots, whitened: &Mat<f64>) -> f64 {
+        let tolerance = felt.tolerance;
         let (sensors, samples) = (self.sensors.len() as f64, self.motion.nrows() as f64);
         // The motion may be learned from a share of the sensors only.
         let ratio = sensors / self.representatives.len() as f64;
-        let motion = log_determinant(roots, whitened, ratio / tolerance, told_by_censored(tolerance));
+        let motion = log_determinant(roots, whitened, ratio / tolerance, felt.told_by_censored());
         let residual =
             if self.freedom > 0.0 { (self.residual / self.freedom / tolerance).ln_1p() } else { 0.0 };
         let loadings = sensors * self.rank() as f64 * samples.ln() / samples;
@@ -374,10 +387,4 @@ fn principal_motion(completed: &Mat<f64>, rank: usize) -> (Mat<f64>, Mat<f64>) {
 /// The residual variance of a sum of squares of so many roots; of one more, so that there is a variance of none.
 fn per_root([sum, count]: [f64; 2]) -> f64 {
     sum / (count + 1.0)
-}
-
-/// What a root that is not felt tells of w, as a share of what one tells that is felt: all where the tolerance is [`SEARCH_TOLERANCE`] or
-/// lower, since it is completed as exactly, and next to nothing with noise.
-fn told_by_censored(tolerance: f64) -> f64 {
-    f64::min(1.0, SEARCH_TOLERANCE / tolerance).powi(2)
 }

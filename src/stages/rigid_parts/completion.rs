@@ -19,8 +19,6 @@ const MAX_RANK: usize = 100;
 const MIN_PER_RANK: usize = 4;
 /// Iterations.
 const ITERATIONS: usize = 200;
-/// Ridge of both factors, as a share of the mean square of a root.
-const RIDGE: f64 = 1e-3;
 /// Momentum: the first, the largest, and the least.
 const MOMENTUM: [f32; 3] = [0.7, 0.95, 0.5];
 /// Factors of the momentum: while the error falls, and when it rose.
@@ -42,8 +40,8 @@ pub(super) struct Completion {
 }
 
 impl Completion {
-    /// Of roots that are scaled by sensor and by sample.
-    pub(super) fn new(roots: &Roots) -> Self {
+    /// Of roots that are scaled by sensor and by sample. The ridge of both factors is a share of the mean square of a root.
+    pub(super) fn new(roots: &Roots, ridge: f64) -> Self {
         let (samples, sensors) = (roots.samples(), roots.sensors());
         let rank = (samples.min(sensors) / MIN_PER_RANK).clamp(1, MAX_RANK);
         let mut blocks = Block::all(roots);
@@ -51,7 +49,7 @@ impl Completion {
         let (mut momentum, mut step, mut before) = (MOMENTUM[0], 0.0, f64::INFINITY);
         for iteration in 0..ITERATIONS {
             interrupt::check();
-            let next = updated(&mut blocks, loadings.as_ref(), step, samples);
+            let next = updated(&mut blocks, loadings.as_ref(), step, ridge);
             blocks.par_iter_mut().for_each(|block| block.advance(next.as_ref()));
             step = momentum;
             if iteration % CHECK == 0 {
@@ -68,7 +66,7 @@ impl Completion {
         let velocity = |t: usize, sensor: usize| f64::from(blocks[t / BLOCK].filled(t % BLOCK, sensor, 0.0));
         Self {
             velocities: Mat::from_fn(samples, sensors, velocity),
-            affinities: affinities(&blocks, loadings.as_ref(), samples),
+            affinities: affinities(&blocks, loadings.as_ref(), ridge),
         }
     }
 }
@@ -165,8 +163,9 @@ fn start(blocks: &[Block], rank: usize) -> Mat<f32> {
 }
 
 /// Updates the scores of all blocks, and then the right factor, sensors × rank.
-fn updated(blocks: &mut [Block], loadings: MatRef<'_, f32>, step: f32, samples: usize) -> Mat<f32> {
-    let shrink = (1.0 / (1.0 + RIDGE)) as f32;
+fn updated(blocks: &mut [Block], loadings: MatRef<'_, f32>, step: f32, share: f64) -> Mat<f32> {
+    let samples: usize = blocks.iter().map(|block| block.roots.nrows()).sum();
+    let shrink = (1.0 / (1.0 + share)) as f32;
     let sums = |block: &mut Block| {
         let filled = block.all_filled(step);
         block.scores = times(filled.as_ref(), loadings) * faer::Scale(shrink);
@@ -176,7 +175,7 @@ fn updated(blocks: &mut [Block], loadings: MatRef<'_, f32>, step: f32, samples: 
         )
     };
     let (products, squares): (Vec<Mat<f32>>, Vec<Mat<f32>>) = blocks.par_iter_mut().map(sums).unzip();
-    let ridge = DMatrix::from_diagonal_element(loadings.ncols(), loadings.ncols(), RIDGE * samples as f64);
+    let ridge = DMatrix::from_diagonal_element(loadings.ncols(), loadings.ncols(), share * samples as f64);
     let inverse = (double(&sum(squares)) + ridge).cholesky().expect("a ridge makes it positive").inverse();
     times(sum(products).as_ref(), single_of(&inverse).as_ref())
 }
@@ -197,13 +196,14 @@ fn orthonormal(loadings: Mat<f32>, blocks: &mut [Block]) -> Mat<f32> {
 }
 
 /// Sizes of the cosines between sensors.
-fn affinities(blocks: &[Block], loadings: MatRef<'_, f32>, samples: usize) -> Mat<f64> {
+fn affinities(blocks: &[Block], loadings: MatRef<'_, f32>, share: f64) -> Mat<f64> {
+    let samples: usize = blocks.iter().map(|block| block.roots.nrows()).sum();
     let (sensors, rank) = loadings.shape();
     let squares =
         double(&sum(in_order(blocks, |block| times(block.scores.transpose(), block.scores.as_ref()))))
             / samples as f64;
     // Half of the sensors move outward at a time.
-    let ridge = DMatrix::from_diagonal_element(rank, rank, 0.5 * RIDGE * sensors as f64);
+    let ridge = DMatrix::from_diagonal_element(rank, rank, 0.5 * share * sensors as f64);
     let weights = (&squares + ridge).cholesky().expect("a ridge makes it positive").solve(&squares);
     let loadings = Mat::from_fn(sensors, rank, |sensor, at| f64::from(loadings[(sensor, at)]));
     let weights = Mat::from_fn(rank, rank, |i, j| 0.5 * (weights[(i, j)] + weights[(j, i)]));

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 
 use super::cluster::Cluster;
 use super::moves::tried_of;
-use super::search::{EXPLAINED, MIN_SAVING, Search, smallest};
+use super::search::{Search, smallest};
 
 /// A cluster that is not dispersed, and what tells whether it should be.
 struct Kept {
@@ -73,7 +73,7 @@ impl Search {
         let sensors = &own.cluster.sensors;
         let best = |&sensor: &usize| smallest(others.iter().map(|(_, other)| other.residuals[sensor]));
         let by_residual: Vec<(usize, f64)> = sensors.iter().map(best).collect::<Option<_>>()?;
-        let is_explained = |least: f64| least <= EXPLAINED * self.felt.tolerance;
+        let is_explained = |least: f64| least <= self.felt.explained();
         let explained = by_residual.iter().filter(|(_, least)| is_explained(*least)).count();
         let mut places: Vec<usize> = by_residual.into_iter().map(|(place, _)| place).collect();
         // What one motion leaves of the cluster, if it explains it.
@@ -125,7 +125,7 @@ impl Search {
         let cost =
             |(place, union): &(usize, Cluster)| union.description_length - self.length(others[*place].1);
         let saving = self.length(own) - unions.iter().map(cost).sum::<f64>();
-        let is_shorter = saving > MIN_SAVING;
+        let is_shorter = saving > self.felt.numbers.min_saving;
         is_shorter.then(|| unions.into_iter().map(|(place, union)| (others[place].0, union)).collect())
     }
 }

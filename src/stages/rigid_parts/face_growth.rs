@@ -9,7 +9,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use rayon::prelude::*;
 
 use super::cluster::Cluster;
-use super::search::{MIN_CLUSTER, MIN_SAVING, Search, smallest};
+use super::search::{MIN_CLUSTER, Search, smallest};
 
 /// Some faces of clusters, and what is known of their unions.
 pub(super) struct Faces<'a> {
@@ -153,7 +153,8 @@ impl<'a> Faces<'a> {
             Some((saving, face, faces, description_length))
         });
         let best = larger.reduce(|best, other| if other.0 > best.0 { other } else { best });
-        let (saving, face, faces, description_length) = best.filter(|(saving, ..)| *saving > MIN_SAVING)?;
+        let (saving, face, faces, description_length) =
+            best.filter(|(saving, ..)| *saving > self.search.felt.numbers.min_saving)?;
         Some(Grown {
             from: part.from,
             faces,

@@ -5,8 +5,8 @@
 use rayon::prelude::*;
 
 use super::cluster::{Cluster, MAX_SENSORS, ROUNDING};
-use super::search::{EXPLAINED, Search};
-use super::separation::{LEVELS, MAX_ROUNDS, best_part};
+use super::search::Search;
+use super::separation::{MAX_ROUNDS, best_part};
 use super::stratified::stratified;
 
 /// How many times more a cluster may leave with more sensors than without. A sensor of another part adds more.
@@ -70,7 +70,7 @@ impl Search {
         let residuals: Vec<Vec<f64>> = clusters.par_iter().map(|own| own.residuals(&self.felt)).collect();
         let mut wanted: Vec<Vec<(f64, usize)>> = vec![Vec::new(); clusters.len()];
         for sensor in self.in_none(clusters) {
-            if let Some(at) = best_part(&residuals, sensor, 0.0) {
+            if let Some(at) = best_part(&residuals, sensor, 0.0, self.felt.numbers.better) {
                 wanted[at].push((residuals[at][sensor], sensor));
             }
         }
@@ -87,7 +87,7 @@ impl Search {
         let with = |count: usize| {
             let both =
                 Cluster::learned_longer(&self.felt, [cluster.sensors.as_slice(), &wanted[..count]].concat());
-            (Self::are_told(count, cluster, &both) && self.is_exact(&both)).then_some(both)
+            (self.are_told(count, cluster, &both) && self.is_exact(&both)).then_some(both)
         };
         counts.take_while(|count| *count > 0).find_map(with)
     }
@@ -102,7 +102,7 @@ impl Search {
         let mut group: Vec<usize> = order.into_iter().take(MAX_GROUP).map(|(_, sensor)| sensor).collect();
         let core: Vec<usize> =
             stratified(cluster.sensors.len(), MAX_GROUP).map(|at| cluster.sensors[at]).collect();
-        let most = f64::min(EXPLAINED * self.felt.tolerance, MORE * cluster.variance().max(ROUNDING));
+        let most = f64::min(self.felt.explained(), MORE * cluster.variance().max(ROUNDING));
         let with =
             |core: &[usize], group: &[usize]| Cluster::learned_longer(&self.felt, [core, group].concat());
         while group.len() >= MIN_GROUP {
@@ -117,7 +117,7 @@ impl Search {
                 );
             }
             if foreign.is_empty() {
-                let is_told = Self::are_told(group.len(), cluster, &both);
+                let is_told = self.are_told(group.len(), cluster, &both);
                 let all = (is_told && both.variance() <= most).then(|| with(&cluster.sensors, &group));
                 return all.filter(|own| own.variance() <= most);
             }
@@ -129,8 +129,8 @@ impl Search {
     }
 
     /// Whether it says something that a cluster explains so many more sensors. As many new components explain them whatever they feel.
-    fn are_told(more: usize, cluster: &Cluster, both: &Cluster) -> bool {
-        let present = |own: &Cluster| own.present(LEVELS[0].0);
+    fn are_told(&self, more: usize, cluster: &Cluster, both: &Cluster) -> bool {
+        let present = |own: &Cluster| own.present(&self.felt, self.felt.numbers.coarse_tolerance);
         more > present(both).saturating_sub(present(cluster))
     }
 }

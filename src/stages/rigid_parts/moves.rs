@@ -7,7 +7,7 @@
 use rayon::prelude::*;
 
 use super::cluster::Cluster;
-use super::search::{MIN_CLUSTER, MIN_SAVING, PIECE, SEED_SENSORS, Search};
+use super::search::{MIN_CLUSTER, PIECE, SEED_SENSORS, Search};
 use super::stratified::stratified;
 
 /// Fewest sensors of a group. A single one that is in a cluster by mistake spans a component alone.
@@ -98,6 +98,7 @@ impl Search {
         rest: &[usize],
         group: &[usize],
     ) -> Option<Place> {
+        let min_saving = self.felt.numbers.min_saving;
         let (tried, has_near) = (tried_of(group), !near.is_empty());
         let both = || self.learned([tried_of(rest), tried.clone()].concat()).description_length;
         let alone = || self.learned(tried.clone()).description_length;
@@ -110,13 +111,13 @@ impl Search {
             || rayon::join(both, || self.core(rest)),
         );
         let here = both - rest;
-        if has_near && here <= MIN_SAVING {
+        if has_near && here <= min_saving {
             // No other can save as much, since none costs less than nothing.
             return None;
         }
-        match least.filter(|(cost, _)| alone - cost > MIN_SAVING) {
-            Some((cost, at)) => (here - cost > MIN_SAVING).then_some(Place::Cluster(at)),
-            None => (alone - here < MIN_SAVING).then_some(Place::Alone),
+        match least.filter(|(cost, _)| alone - cost > min_saving) {
+            Some((cost, at)) => (here - cost > min_saving).then_some(Place::Cluster(at)),
+            None => (alone - here < min_saving).then_some(Place::Alone),
         }
     }
 

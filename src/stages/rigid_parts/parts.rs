@@ -8,8 +8,8 @@ use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 
+use super::cluster::Cluster;
 use super::cluster::evidence::Evidence;
-use super::cluster::{Cluster, MIN_FREEDOM};
 use super::faces::similar;
 use super::factorisation::MAX_RANK;
 use super::medians::typical_size;
@@ -19,6 +19,7 @@ use super::search::MIN_SENSORS;
 use super::separation::best_part;
 use super::subspace::{MotionSubspace, ROTATION_RANK};
 use crate::numerics::partition::named_by_appearance;
+use crate::stages::numbers::Numbers;
 use crate::stages::sense::Tactile;
 
 /// Samples at which a sensor must feel something to be searched for: four for each of the six numbers of its c.
@@ -46,14 +47,14 @@ pub struct RigidParts {
 ///
 /// In: M × T pressures, of any sign and NaN where one is missing, of sensors that all change; whether negative ones are signal
 /// (`signed`), not noise about 0; and `sensors`, at least
-/// [`MIN_SENSORS`](super::MIN_SENSORS) of them, rising and spread over all. The motions of parts are learned from these; the other
+/// [`MIN_SENSORS`](super::MIN_SENSORS) of them, rising and spread over all; and the `numbers` that decide. The motions of parts are learned from these; the other
 /// sensors are assigned to the part with the smallest residual, or, if they feel something at few samples, the largest evidence. Out: the part of all M sensors. No random numbers are drawn, and
 /// the number of threads changes no bit.
 ///
 /// # Panics
 /// If `sensors` is empty or names a sensor beyond M, or T is 0.
-pub fn rigid_parts(tactile: &Tactile, signed: bool, sensors: &[usize]) -> RigidParts {
-    let mut prepared = Prepared::new(tactile, signed, sensors);
+pub fn rigid_parts(tactile: &Tactile, signed: bool, sensors: &[usize], numbers: &Numbers) -> RigidParts {
+    let mut prepared = Prepared::new(tactile, signed, sensors, numbers);
     let count = prepared.series.len();
     // Sensors that feel something at fewer samples tell next to nothing, and span motions of their own. They go to the part that makes them
     // likely, unless nearly all are such.
@@ -62,7 +63,7 @@ pub fn rigid_parts(tactile: &Tactile, signed: bool, sensors: &[usize]) -> RigidP
     let are_enough = telling.len() >= MIN_SENSORS;
     let sensors = if are_enough { &telling } else { sensors };
     let mut search = prepared.search(sensors);
-    let mut parts = parts_of(search.clusters());
+    let mut parts = parts_of(search.clusters(), numbers.min_freedom);
     if parts.is_empty() {
         parts.push(search.whole());
     }
@@ -76,11 +77,11 @@ pub fn rigid_parts(tactile: &Tactile, signed: bool, sensors: &[usize]) -> RigidP
     }
     let residuals: Vec<Vec<f64>> = parts.par_iter().map(|part| part.shares(every)).collect();
     let scales: Vec<f64> = sensors.iter().map(|&sensor| prepared.scales[sensor]).collect();
-    let evidence: Vec<_> = parts.iter().map(|part| part.evidence(&scales)).collect();
+    let evidence: Vec<_> = parts.iter().map(|part| part.evidence(&scales, numbers.min_tolerance)).collect();
     let likeliest = |sensor: usize| likeliest_part(&evidence, every, sensor, prepared.scales[sensor]);
     labels.par_iter_mut().enumerate().filter(|(_, label)| label.is_none()).for_each(|(sensor, label)| {
         let likely = if are_enough && !tells[sensor] { likeliest(sensor) } else { None };
-        *label = likely.or_else(|| best_part(&residuals, sensor, search.most_residual()));
+        *label = likely.or_else(|| best_part(&residuals, sensor, search.most_residual(), numbers.better));
     });
     let rest: Vec<usize> = (0..count).filter(|&sensor| labels[sensor].is_none()).collect();
     let groups = similar(every, &rest);
@@ -121,10 +122,10 @@ fn likeliest_part(parts: &[Option<Evidence>], roots: &Roots, sensor: usize, scal
 }
 
 /// The clusters that are parts: those that feel how they rotate, and large ones.
-fn parts_of(clusters: Vec<Cluster>) -> Vec<Cluster> {
+fn parts_of(clusters: Vec<Cluster>, min_freedom: f64) -> Vec<Cluster> {
     let small = typical_size(clusters.iter().map(|own| own.sensors.len()).collect()).div_ceil(2);
     let is_part = |own: &Cluster| {
-        own.freedom >= MIN_FREEDOM && (own.rank() >= ROTATION_RANK || own.sensors.len() >= small)
+        own.freedom >= min_freedom && (own.rank() >= ROTATION_RANK || own.sensors.len() >= small)
     };
     clusters.into_iter().filter(is_part).collect()
 }

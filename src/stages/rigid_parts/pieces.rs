@@ -3,14 +3,11 @@
 use faer::Mat;
 use kodama::Method;
 
-use super::cluster::{Cluster, Felt, MIN_FREEDOM};
+use super::cluster::{Cluster, Felt};
 use super::completion::Completion;
-use super::search::{EXPLAINED, MIN_CLUSTER, MIN_SAVING, MIN_SENSORS, smallest};
+use super::search::{MIN_CLUSTER, MIN_SENSORS, smallest};
 use crate::numerics::linkage;
 
-/// How many times less variance a piece must leave than one motion of all sensors does. Pieces of a rigid part with noise, or with a
-/// small error of the model, leave almost as much as the part.
-const SHARPER: f64 = 30.0;
 /// Most pieces that are looked for at once.
 const MAX_PIECES: usize = 6;
 /// Most rounds of looking for pieces among the sensors that are left.
@@ -38,7 +35,7 @@ pub(super) fn pieces(felt: &Felt, sensors: &[usize]) -> (Vec<Cluster>, Vec<usize
 /// The same without looking again among those that are left. The completion of a few sensors shows what that of all hides.
 fn pieces_once(outer: &Felt, sensors: &[usize]) -> (Vec<Vec<usize>>, Vec<usize>) {
     let roots = outer.roots.select_as_they_are(sensors);
-    let completion = Completion::new(&roots);
+    let completion = Completion::new(&roots, outer.numbers.completion_ridge);
     let felt = Felt {
         roots,
         completed: completion.velocities,
@@ -46,18 +43,18 @@ fn pieces_once(outer: &Felt, sensors: &[usize]) -> (Vec<Vec<usize>>, Vec<usize>)
         memory: outer.memory.clone(),
         ..*outer
     };
-    let limit = EXPLAINED * felt.tolerance;
+    let limit = felt.explained();
     let whole = Cluster::learned_longer(&felt, (0..sensors.len()).collect());
     if whole.variance() <= limit {
         return (vec![sensors.to_vec()], Vec::new());
     }
-    let limit = f64::min(limit, whole.variance() / SHARPER);
+    let limit = f64::min(limit, whole.variance() / felt.numbers.sharper);
     let mut best = Vec::new();
     for k in 2..=MAX_PIECES.min(2 * sensors.len() / MIN_SENSORS) {
         let mut found = k_subspaces(&felt, &completion.affinities, k);
         found.retain(|own| {
             own.variance() <= limit
-                && own.freedom >= MIN_FREEDOM
+                && own.freedom >= felt.numbers.min_freedom
                 && !is_two(&felt, &completion.affinities, own)
         });
         if count(&found) > count(&best) {
@@ -87,7 +84,8 @@ fn is_two(felt: &Felt, affinities: &Mat<f64>, cluster: &Cluster) -> bool {
         Cluster::new(felt, own.map(|(sensor, _)| *sensor).collect())
     };
     let both = Cluster::new(felt, sensors.clone());
-    half(0).description_length + half(1).description_length - both.description_length <= MIN_SAVING
+    half(0).description_length + half(1).description_length - both.description_length
+        <= felt.numbers.min_saving
 }
 
 /// Sensors in these clusters.

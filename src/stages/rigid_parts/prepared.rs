@@ -8,10 +8,8 @@ use super::memory::Memory;
 use super::roots::Roots;
 use super::search::Search;
 use super::subspace::{Loadings, MotionSubspace};
+use crate::stages::numbers::Numbers;
 use crate::stages::sense::Tactile;
-
-/// Samples that are searched, spread over all at which anything is felt.
-const MAX_SAMPLES: usize = 1500;
 
 /// What M sensors felt, and which of it is searched.
 pub(super) struct Prepared<'a> {
@@ -29,33 +27,45 @@ pub(super) struct Prepared<'a> {
     pub sizes: Vec<f64>,
     /// At these samples, of all sensors; scaled by sensor and by sample.
     pub roots: Roots,
+    /// The numbers that decide.
+    numbers: Numbers,
 }
 
 impl<'a> Prepared<'a> {
     /// Of M × T pressures, of which those of `sensors` are searched.
-    pub(super) fn new(tactile: &'a Tactile, signed: bool, sensors: &[usize]) -> Self {
+    pub(super) fn new(tactile: &'a Tactile, signed: bool, sensors: &[usize], numbers: &Numbers) -> Self {
         let series: Vec<&[f32]> = tactile.series().collect();
         let floors = floors(&series, signed);
         let searched: Vec<f64> = sensors.iter().map(|&sensor| floors[sensor]).collect();
-        let samples = telling_samples(&series_of(&series, sensors), signed, &searched, MAX_SAMPLES);
+        let samples = telling_samples(&series_of(&series, sensors), signed, &searched, numbers.samples);
         let roots = Roots::at(&series, &samples, signed);
         let scales = roots.scales();
         let floor = typical_floor(&floors, &scales);
         let roots = roots.scaled(&scales);
         let sizes = roots.select(sensors).sizes();
-        Self { roots: roots.equalised(&sizes, floor), series, signed, samples, floor, scales, sizes }
+        Self {
+            roots: roots.equalised(&sizes, floor),
+            series,
+            signed,
+            samples,
+            floor,
+            scales,
+            sizes,
+            numbers: *numbers,
+        }
     }
 
     /// A search among these sensors.
     pub(super) fn search(&self, sensors: &[usize]) -> Search {
         let roots = self.roots.select_as_they_are(sensors);
-        let Completion { velocities, affinities } = Completion::new(&roots);
+        let Completion { velocities, affinities } = Completion::new(&roots, self.numbers.completion_ridge);
         let felt = Felt {
             roots,
             completed: velocities,
             sizes: self.sizes.clone(),
             tolerance: 0.0,
             iterations: ITERATIONS,
+            numbers: self.numbers,
             memory: Memory::default(),
         };
         Search::new(felt, affinities)

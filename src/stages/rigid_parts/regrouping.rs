@@ -15,7 +15,7 @@ use rayon::prelude::*;
 
 use super::cluster::Cluster;
 use super::face_growth::Faces;
-use super::search::{EXPLAINED, MIN_SAVING, SEED_SENSORS, Search, smallest};
+use super::search::{SEED_SENSORS, Search, smallest};
 use super::stratified::stratified;
 
 /// What all sensors of a flat face feel: this many numbers.
@@ -56,7 +56,7 @@ impl Search {
         let length = self.length_of(clusters, &every);
         parts.iter().for_each(|part| part.complete_roots(&mut self.felt));
         let parts = self.assigned(parts, &every);
-        if length - self.length_of(&parts, &every) > MIN_SAVING * clusters.len() as f64 {
+        if length - self.length_of(&parts, &every) > self.felt.numbers.min_saving * clusters.len() as f64 {
             return Some(parts);
         }
         self.felt.completed = before;
@@ -65,7 +65,7 @@ impl Search {
 
     /// The flat faces that the sensors of a cluster are on, and those on none as one more group.
     fn flat_faces(&self, cluster: &Cluster) -> Vec<Vec<usize>> {
-        let most = EXPLAINED * self.felt.tolerance;
+        let most = self.felt.explained();
         let flats = flats(&rows(cluster), most);
         let flats: Vec<Cluster> = flats
             .into_iter()

@@ -7,29 +7,18 @@ use faer::Mat;
 use kodama::Method;
 use rayon::prelude::*;
 
-use super::cluster::{Cluster, Felt, MAX_OPEN, SEARCH_TOLERANCE};
+use super::cluster::{Cluster, Felt};
 use super::medians::median;
 use super::weights::weigh;
 use crate::numerics::linkage::largest_clusters;
+use crate::stages::numbers::Numbers;
 
 /// Sensors of a seed cluster: the fewest, and the most. Others wait until clusters have grown.
 pub(super) const SEED_SENSORS: [usize; 2] = [6, 16];
 /// Fewest sensors that several parts can be estimated from: two seed clusters.
 pub const MIN_SENSORS: usize = 2 * SEED_SENSORS[0];
-/// Least affinity of the sensors of a seed cluster, on average.
-const MIN_AFFINITY: f64 = 0.1;
 /// Share of the sensors of a cluster that each of two pieces has at most, which are tried apart.
 pub(super) const PIECE: f64 = 0.6;
-/// Clusters of highest affinity that a cluster may merge with.
-const NEIGHBOURS: usize = 5;
-/// Nats per sample that a merge must save, and a cluster against two pieces of it.
-pub(super) const MIN_SAVING: f64 = 0.3;
-/// Largest residual variance of a part, in units of the tolerance.
-pub(super) const EXPLAINED: f64 = 5.0;
-/// The same of a seed cluster.
-const MIXED: f64 = 10.0;
-/// The tolerance, the residual variance that is encoded as noise is: the least and the largest.
-const TOLERANCE: [f64; 2] = [SEARCH_TOLERANCE, 5e-2];
 /// Fewest sensors of a cluster.
 pub(super) const MIN_CLUSTER: usize = 4;
 /// Most iterations in which sensors are assigned, and of merging and assigning.
@@ -123,7 +112,7 @@ impl Search {
 
     /// The residual variance that is still explained, of a sensor that is in no cluster.
     pub(super) fn most_residual(&self) -> f64 {
-        MAX_OPEN * self.felt.tolerance
+        self.felt.numbers.max_open * self.felt.tolerance
     }
 
     /// All sensors as one cluster.
@@ -159,16 +148,18 @@ impl Search {
 
     /// Sets the tolerance to the median residual variance of these clusters, within bounds.
     fn set_tolerance(&mut self, clusters: &[Vec<usize>]) {
-        self.felt.tolerance = TOLERANCE[0];
+        let Numbers { min_tolerance, max_tolerance, .. } = self.felt.numbers;
+        self.felt.tolerance = min_tolerance;
         let variance = |own: &Vec<usize>| Cluster::widest(&self.felt, own.clone()).variance();
         let variances = clusters.par_iter().map(variance).collect();
-        self.felt.tolerance = median(variances).clamp(TOLERANCE[0], TOLERANCE[1]);
+        self.felt.tolerance = median(variances).clamp(min_tolerance, max_tolerance.max(min_tolerance));
     }
 
     /// The clusters of these sensors that one motion explains.
     fn unmixed(&self, seeds: &[Vec<usize>]) -> Vec<Cluster> {
         let found: Vec<Cluster> = seeds.par_iter().map(|own| Cluster::new(&self.felt, own.clone())).collect();
-        found.into_iter().filter(|own| own.variance() <= MIXED * self.felt.tolerance).collect()
+        let most = self.felt.numbers.max_seed_residual * self.felt.tolerance;
+        found.into_iter().filter(|own| own.variance() <= most).collect()
     }
 
     /// Small clusters of some sensors, of at most so many, by average linkage on their affinities.
@@ -181,13 +172,15 @@ impl Search {
     /// Clusters of some sensors, of at most so many, by average linkage on their affinities.
     pub(super) fn linked(&self, sensors: &[usize], most: usize) -> Vec<Vec<usize>> {
         let distance = |i: usize, j: usize| 1.0 - self.affinities[(sensors[i], sensors[j])];
-        let found = largest_clusters(sensors.len(), distance, Method::Average, most, 1.0 - MIN_AFFINITY);
+        let farthest = 1.0 - self.felt.numbers.min_affinity;
+        let found = largest_clusters(sensors.len(), distance, Method::Average, most, farthest);
         found.into_iter().map(|own| own.into_iter().map(|at| sensors[at]).collect()).collect()
     }
 
     /// Merges the pair of clusters that saves most, again and again, as long as one motion explains the union, and both have
     /// components in common.
     pub(super) fn merged(&mut self, clusters: Vec<Cluster>) -> Vec<Cluster> {
+        let Numbers { min_saving, min_tolerance, .. } = self.felt.numbers;
         let mut name = clusters.len();
         let mut clusters: BTreeMap<usize, Cluster> = clusters.into_iter().enumerate().collect();
         // Those that are not one part are `None`.
@@ -199,12 +192,12 @@ impl Search {
             let union =
                 |(a, b)| ((a, b), self.may_be_one(Cluster::union(&self.felt, &clusters[&a], &clusters[&b])));
             unions.extend(new.into_par_iter().map(union).collect::<Vec<_>>());
-            let mut best = best_merge(&clusters, &unions, &pairs);
-            if best.is_none() && self.felt.tolerance >= SEARCH_TOLERANCE {
+            let mut best = best_merge(&clusters, &unions, &pairs, min_saving);
+            if best.is_none() && self.felt.tolerance >= min_tolerance {
                 // More iterations may show what the first ones leave open. A separation, whose tolerance is lower, begins with many.
                 let open = unions.par_iter_mut().filter(|(pair, _)| pairs.contains(pair));
                 open.filter_map(|(_, union)| union.as_mut()).for_each(|union| union.learn_longer(&self.felt));
-                best = best_merge(&clusters, &unions, &pairs);
+                best = best_merge(&clusters, &unions, &pairs, min_saving);
             }
             let Some((a, b)) = best else { break };
             let mut union = unions.remove(&(a, b)).flatten().expect("it is the best of these");
@@ -224,7 +217,7 @@ impl Search {
 
     /// Whether two clusters have components in common, and one motion explains both.
     fn is_one(&self, a: &Cluster, b: &Cluster, union: &mut Cluster) -> bool {
-        Cluster::have_common(a, b, union, self.felt.tolerance) && self.explains_in_the_end(union)
+        Cluster::have_common(a, b, union, &self.felt) && self.explains_in_the_end(union)
     }
 
     /// Whether the motion of a cluster explains it, at once or after more iterations.
@@ -237,14 +230,14 @@ impl Search {
 
     /// Whether the motion of a cluster explains it, or has too few degrees of freedom to tell.
     pub(super) fn explains(&self, cluster: &Cluster) -> bool {
-        cluster.variance() <= EXPLAINED * self.felt.tolerance || cluster.freedom <= 0.5
+        cluster.variance() <= self.felt.explained() || cluster.freedom <= 0.5
     }
 
     /// A cluster, unless its first iterations leave so much that more would not explain it. In a separation, whose tolerance is lower, only
     /// more iterations can tell, so every cluster stays.
     pub(super) fn may_be_one(&self, cluster: Cluster) -> Option<Cluster> {
-        let is_near = cluster.variance() <= MAX_OPEN * self.felt.tolerance || self.explains(&cluster);
-        (is_near || self.felt.tolerance < SEARCH_TOLERANCE).then_some(cluster)
+        let is_near = cluster.variance() <= self.most_residual() || self.explains(&cluster);
+        (is_near || self.felt.tolerance < self.felt.numbers.min_tolerance).then_some(cluster)
     }
 
     /// Each cluster with those of highest affinity, on average.
@@ -278,7 +271,7 @@ impl Search {
         let mut order: Vec<(f64, usize)> =
             clusters.into_iter().map(|name| (affinity(of(name)), name)).collect();
         order.sort_by(|one, other| other.0.total_cmp(&one.0));
-        order.truncate(NEIGHBOURS);
+        order.truncate(self.felt.numbers.neighbours);
         order.into_iter().map(|(_, name)| name).collect()
     }
 
@@ -305,7 +298,7 @@ impl Search {
                 let Some((best, least)) = smallest(residuals.iter().enumerate().map(judged)) else {
                     continue;
                 };
-                let explains = least <= EXPLAINED * tolerance;
+                let explains = least <= self.felt.explained();
                 let to = match own.get(&sensor) {
                     Some(&own)
                         if !explains || residuals[own][sensor] <= tolerance && !alone.contains(&sensor) =>
@@ -351,11 +344,12 @@ fn unclustered(clusters: &[Cluster], sensors: &[usize]) -> Vec<usize> {
     sensors.iter().copied().filter(|sensor| !taken.contains(sensor)).collect()
 }
 
-/// The pair of clusters whose union saves most, if that is more than [`MIN_SAVING`].
+/// The pair of clusters whose union saves most, if that is more than `min_saving`.
 fn best_merge(
     clusters: &BTreeMap<usize, Cluster>,
     unions: &BTreeMap<(usize, usize), Option<Cluster>>,
     pairs: &[(usize, usize)],
+    min_saving: f64,
 ) -> Option<(usize, usize)> {
     let saving = |&(a, b): &(usize, usize)| {
         let union = unions[&(a, b)].as_ref()?;
@@ -364,7 +358,7 @@ fn best_merge(
     };
     let best = pairs.iter().filter_map(saving);
     let best = best.reduce(|best, other| if other.0 > best.0 { other } else { best });
-    best.filter(|(saving, _)| *saving > MIN_SAVING).map(|(_, pair)| pair)
+    best.filter(|(saving, _)| *saving > min_saving).map(|(_, pair)| pair)
 }
 
 /// The first of the smallest numbers, and its place.

@@ -11,24 +11,15 @@
 
 use rayon::prelude::*;
 
-use super::cluster::{Cluster, MIN_FREEDOM};
+use super::cluster::Cluster;
 use super::halves::slow_share;
 use super::pieces::pieces;
-use super::search::{EXPLAINED, MIN_CLUSTER, MIN_SENSORS, Search};
+use super::search::{MIN_CLUSTER, MIN_SENSORS, Search};
 use super::weights::calm_share;
+use crate::stages::numbers::Numbers;
 
-/// What counts as exact, coarse and fine: the residual variance, and the iterations in which a motion is learned, and in which it comes
-/// to its end.
-pub(super) const LEVELS: [(f64, [usize; 2]); 2] = [(2e-5, [24, 100]), (2e-8, [24, 300])];
-/// Residual of a sensor by a part, as a share of that by any other, up to which it is on that part.
-const BETTER: f64 = 0.2;
-/// Variance in slow samples, as a share of that in fast ones, below which an error vanishes with the speed.
-const VANISHING: f64 = 0.25;
-/// Residual variance up to which the motion of a cluster counts as leaving nothing.
-const NOTHING: f64 = 1e-9;
-/// Below this, the residual of a cluster is an error of the model: the residual variance of the calmer half of the samples, as a share of
-/// that of the other half. Two parts move against each other at most times, and have more.
-const UNEVEN: f64 = 0.09;
+/// Iterations in which a motion is learned, and in which it comes to its end: for the coarse idea of what is exact, and for the fine one.
+const ITERATIONS: [[usize; 2]; 2] = [[24, 100], [24, 300]];
 /// Most rounds of separating, assigning, merging and growing, and of growing in each.
 pub(super) const MAX_ROUNDS: usize = 3;
 
@@ -37,7 +28,9 @@ impl Search {
     pub(super) fn separated(&mut self, clusters: &[Cluster]) -> Option<Vec<Cluster>> {
         let before = (self.felt.tolerance, self.felt.iterations);
         let (mut last, mut found) = (before, None::<Vec<Cluster>>);
-        for (at, level) in LEVELS.into_iter().enumerate() {
+        let Numbers { coarse_tolerance, fine_tolerance, .. } = self.felt.numbers;
+        let levels = [(coarse_tolerance, ITERATIONS[0]), (fine_tolerance, ITERATIONS[1])];
+        for (at, level) in levels.into_iter().enumerate() {
             (self.felt.tolerance, self.felt.iterations) = level;
             let learned = |own: &Cluster| Cluster::learned_longer(&self.felt, own.sensors.clone());
             let start: Vec<Cluster> = found.as_deref().unwrap_or(clusters).par_iter().map(learned).collect();
@@ -49,7 +42,7 @@ impl Search {
                     // Nothing shows which are of several parts.
                     break;
                 }
-            } else if !quarter_leaves_nothing(&start) {
+            } else if !self.quarter_leaves_nothing(&start) {
                 break;
             }
             if self.nothing_is_left_to_separate(&start) {
@@ -58,7 +51,9 @@ impl Search {
                 }
                 break;
             }
-            let Some(more) = self.separated_at(start, EXPLAINED * before.0) else { break };
+            let Some(more) = self.separated_at(start, self.felt.numbers.max_residual * before.0) else {
+                break;
+            };
             (last, found) = (level, Some(more));
         }
         (self.felt.tolerance, self.felt.iterations) = last;
@@ -111,10 +106,10 @@ impl Search {
     /// and how many there are. If most leave nothing or much, the model is exact. If it has an error, a part leaves something between,
     /// which vanishes in slow samples. With noise no piece will be exact.
     fn left_by(&self, clusters: &[Cluster]) -> [usize; 3] {
-        let told = told(clusters);
-        let leaves_nothing = |own: &&&Cluster| own.variance() <= NOTHING;
+        let told = self.told(clusters);
+        let leaves_nothing = |own: &&&Cluster| own.variance() <= self.felt.numbers.nothing;
         let leaves_much = |own: &&&Cluster| {
-            !self.is_exact(own) && slow_share(&self.felt, &own.representatives) >= VANISHING
+            !self.is_exact(own) && slow_share(&self.felt, &own.representatives) >= self.felt.numbers.vanishing
         };
         [told.iter().filter(leaves_nothing).count(), told.par_iter().filter(leaves_much).count(), told.len()]
     }
@@ -124,18 +119,35 @@ impl Search {
         if self.has_exact_model {
             return clusters.iter().all(|own| self.is_exact(own));
         }
-        told(clusters).par_iter().all(|own| self.is_settled(own))
+        self.told(clusters).par_iter().all(|own| self.is_settled(own))
     }
 
     /// Whether a cluster is of one part: it is exact, or the model is not, and what it leaves is an error of the model.
     pub(super) fn is_settled(&self, cluster: &Cluster) -> bool {
-        let is_uneven = || is_told(cluster) && calm_share(&self.felt, cluster) < UNEVEN;
+        let is_uneven =
+            || self.is_told(cluster) && calm_share(&self.felt, cluster) < self.felt.numbers.uneven;
         self.is_exact(cluster) || !self.has_exact_model && is_uneven()
     }
 
     /// Whether one motion explains a cluster to the end, of enough that others would not do as well.
     pub(super) fn is_exact(&self, cluster: &Cluster) -> bool {
-        cluster.variance() <= EXPLAINED * self.felt.tolerance && is_told(cluster)
+        cluster.variance() <= self.felt.explained() && self.is_told(cluster)
+    }
+
+    /// Whether a cluster has enough informative values to tell whether one motion explains it. One motion explains any few sensors.
+    fn is_told(&self, cluster: &Cluster) -> bool {
+        cluster.freedom >= self.felt.numbers.min_freedom
+    }
+
+    /// Those of these clusters that have enough.
+    fn told<'a>(&self, clusters: &'a [Cluster]) -> Vec<&'a Cluster> {
+        clusters.iter().filter(|own| self.is_told(own)).collect()
+    }
+
+    /// Whether a quarter of the clusters leave nothing, so that a finer idea of what is exact may find more.
+    fn quarter_leaves_nothing(&self, clusters: &[Cluster]) -> bool {
+        let told = self.told(clusters);
+        4 * told.iter().filter(|own| own.variance() <= self.felt.numbers.nothing).count() >= told.len()
     }
 
     fn complete(&mut self, clusters: &[Cluster]) {
@@ -193,29 +205,14 @@ impl Search {
     }
 }
 
-/// Whether a cluster has enough informative values to tell whether one motion explains it. One motion explains any few sensors.
-fn is_told(cluster: &Cluster) -> bool {
-    cluster.freedom >= MIN_FREEDOM
-}
-
-/// Those of these clusters that have enough.
-fn told(clusters: &[Cluster]) -> Vec<&Cluster> {
-    clusters.iter().filter(|own| is_told(own)).collect()
-}
-
-/// Whether a quarter of the clusters leave nothing, so that a finer idea of what is exact may find more.
-fn quarter_leaves_nothing(clusters: &[Cluster]) -> bool {
-    let told = told(clusters);
-    4 * told.iter().filter(|own| own.variance() <= NOTHING).count() >= told.len()
-}
-
-/// The part whose motion explains a sensor best, if it leaves no more than this, or much less than that of any other does.
-pub(super) fn best_part(residuals: &[Vec<f64>], sensor: usize, most: f64) -> Option<usize> {
+/// The part whose motion explains a sensor best, if it leaves no more than `most`, or no more than the share `better` of what that of any
+/// other leaves.
+pub(super) fn best_part(residuals: &[Vec<f64>], sensor: usize, most: f64, better: f64) -> Option<usize> {
     let mut order: Vec<(f64, usize)> =
         residuals.iter().enumerate().map(|(at, own)| (own[sensor], at)).collect();
     order.sort_by(|a, b| a.0.total_cmp(&b.0));
     let next = order.get(1).map_or(f64::INFINITY, |next| next.0);
-    order.first().filter(|best| best.0 <= f64::max(most, BETTER * next)).map(|best| best.1)
+    order.first().filter(|best| best.0 <= f64::max(most, better * next)).map(|best| best.1)
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ use std::cmp::Reverse;
 use rayon::prelude::*;
 
 use super::cluster::Cluster;
-use super::search::{MIN_SAVING, PIECE, Search};
+use super::search::{PIECE, Search};
 
 impl Search {
     /// Splits clusters into pieces that have nothing in common.
@@ -32,13 +32,13 @@ impl Search {
         let [first, second] = &pieces[..] else { return None };
         let both = Cluster::union(&self.felt, first, second);
         let saving = first.description_length + second.description_length - both.description_length;
-        if saving > MIN_SAVING {
+        if saving > self.felt.numbers.min_saving {
             return None;
         }
         let length = self.learned(cluster.sensors.clone()).description_length;
         let before = self.felt.completed.clone();
         let pieces = self.assigned(pieces, &cluster.sensors);
-        if self.length_of(&pieces, &cluster.sensors) - length > MIN_SAVING {
+        if self.length_of(&pieces, &cluster.sensors) - length > self.felt.numbers.min_saving {
             self.felt.completed = before;
             return None;
         }

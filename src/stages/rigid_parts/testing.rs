@@ -3,12 +3,13 @@
 use faer::Mat;
 use rand::RngExt;
 
-use super::cluster::{Felt, ITERATIONS, SEARCH_TOLERANCE};
+use super::cluster::{Felt, ITERATIONS};
 use super::completion::Completion;
 use super::memory::Memory;
 use super::roots::{Roots, product};
 use super::search::Search;
 use crate::numerics::rng::stream;
+use crate::stages::numbers::Numbers;
 
 /// Sensors of each pair of opposite faces.
 const SENSORS: usize = 10;
@@ -23,10 +24,12 @@ pub(super) fn felt_of(velocities: &Mat<f64>) -> (Felt, Mat<f64>) {
     let roots = Roots { values, thresholds: sizes.clone(), signed: false };
     let scales = roots.scales();
     let roots = roots.scaled(&scales).equalised(&sizes, 0.0);
-    let completion = Completion::new(&roots);
+    let numbers = Numbers::default();
+    let completion = Completion::new(&roots, numbers.completion_ridge);
     let (completed, iterations) = (completion.velocities, ITERATIONS);
     let memory = Memory::default();
-    let felt = Felt { roots, completed, sizes, tolerance: SEARCH_TOLERANCE, iterations, memory };
+    let felt =
+        Felt { roots, completed, sizes, tolerance: numbers.min_tolerance, iterations, numbers, memory };
     (felt, completion.affinities)
 }
 

@@ -39,7 +39,14 @@ fn the_tree_is_recovered_with_joints_that_are_locked_and_that_never_are() {
         [(Morphology::Chain, 0.0), (Morphology::Chain, 0.9), (Morphology::Tee, 0.5)]
     {
         let (agent, tactile) = felt(morphology, coordination);
-        let found = joints(&tactile, false, &known(&agent), None, &mut stream(1, 1, "co-motion", 0));
+        let found = joints(
+            &tactile,
+            false,
+            &known(&agent),
+            None,
+            &Numbers::default(),
+            &mut stream(1, 1, "co-motion", 0),
+        );
         assert_eq!(
             edges(&found),
             undirected(agent.truth().tree),
@@ -57,7 +64,14 @@ fn the_tree_is_recovered_with_joints_that_are_locked_and_that_never_are() {
 fn only_simultaneous_motion_tells_the_tree() {
     let (agent, mut tactile) = felt(Morphology::Chain, 0.5);
     let correlation = |tactile: &Tactile| {
-        let found = joints(tactile, false, &known(&agent), None, &mut stream(1, 1, "co-motion", 0));
+        let found = joints(
+            tactile,
+            false,
+            &known(&agent),
+            None,
+            &Numbers::default(),
+            &mut stream(1, 1, "co-motion", 0),
+        );
         found.pairs.iter().find(|pair| (pair.part, pair.other) == (0, 1)).unwrap().correlation
     };
     let before = correlation(&tactile);
@@ -72,7 +86,16 @@ fn the_number_of_threads_changes_no_bit() {
     let (agent, tactile) = felt(Morphology::Chain, 0.5);
     let on = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| joints(&tactile, false, &known(&agent), None, &mut stream(1, 1, "co-motion", 0)))
+        pool.install(|| {
+            joints(
+                &tactile,
+                false,
+                &known(&agent),
+                None,
+                &Numbers::default(),
+                &mut stream(1, 1, "co-motion", 0),
+            )
+        })
     };
     assert_eq!(on(1), on(3));
 }

@@ -7,7 +7,7 @@
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
-use super::{Cluster, SEARCH_TOLERANCE};
+use super::Cluster;
 
 /// Most iterations in which c is found; each updates which samples are informative.
 const ITERATIONS: usize = 30;
@@ -27,8 +27,8 @@ pub(in super::super) struct Evidence {
 }
 
 impl Cluster {
-    /// Of this part, in the units that these scales take roots to: one for each sensor that was searched.
-    pub(in super::super) fn evidence(&self, scales: &[f64]) -> Option<Evidence> {
+    /// Of this part, in the units that these scales take roots to: one for each sensor that was searched. Its errors have at least this variance.
+    pub(in super::super) fn evidence(&self, scales: &[f64], tolerance: f64) -> Option<Evidence> {
         let (count, k) = self.loadings.shape();
         let own: Vec<f64> = self.representatives.iter().map(|&sensor| scales[sensor]).collect();
         let c = DMatrix::from_fn(count, k, |sensor, at| own[sensor] * self.loadings[(sensor, at)]);
@@ -41,7 +41,7 @@ impl Cluster {
             motion: DMatrix::from_fn(k, self.motion.nrows(), |at, t| self.motion[(t, at)]),
             log_determinant: -log_determinant(&factor),
             precision: factor.inverse(),
-            variance: size * self.variance().max(SEARCH_TOLERANCE),
+            variance: size * self.variance().max(tolerance),
         })
     }
 }

@@ -6,7 +6,7 @@
 
 use faer::Mat;
 
-use super::{Cluster, Felt, WEIGHTS, principal_motion};
+use super::{Cluster, Felt, principal_motion};
 
 /// Iterations with one component more.
 const ITERATIONS: usize = 24;
@@ -22,7 +22,7 @@ impl Cluster {
         other.completed = self.as_felt(felt);
         for (rank, iterations) in [(rank + 1, ITERATIONS), (rank, felt.iterations[1])] {
             (other.loadings, other.motion) = principal_motion(&other.completed, rank);
-            other.learn(felt, iterations, WEIGHTS[1]);
+            other.learn(felt, iterations, felt.weights()[1]);
         }
         if other.variance() < self.variance() {
             *self = other;
@@ -75,7 +75,7 @@ mod tests {
             let mut own = Cluster::widest(&felt, (0..40).collect());
             own.completed = own.as_felt(&felt);
             (own.loadings, own.motion) = principal_motion(&own.completed, 6);
-            own.learn(&felt, 300, WEIGHTS[1]);
+            own.learn(&felt, 300, felt.weights()[1]);
             let before = own.variance();
             own.leave_minimum(&felt);
             assert!(own.variance() <= before, "{number}: {before} becomes {}", own.variance());

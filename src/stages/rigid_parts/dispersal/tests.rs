@@ -87,7 +87,7 @@ fn dispersed(search: &mut Search, clusters: &[Vec<usize>]) -> Vec<Vec<usize>> {
 /// How many of these sensors the motion of others explains.
 fn explained(search: &Search, sensors: &[usize], others: &[usize]) -> usize {
     let residuals = search.learned(others.to_vec()).residuals(&search.felt);
-    sensors.iter().filter(|&&sensor| residuals[sensor] <= EXPLAINED * search.felt.tolerance).count()
+    sensors.iter().filter(|&&sensor| residuals[sensor] <= search.felt.explained()).count()
 }
 
 #[test]

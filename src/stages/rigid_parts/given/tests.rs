@@ -36,7 +36,7 @@ fn unexplained(w: &[f64], found: &MotionSubspace) -> f64 {
 fn motions_are_recovered_from_few_samples() {
     let ranks = [3, 5, 6];
     let (motions, tactile, labels) = felt(&ranks);
-    let found = motions_of_parts(&tactile, false, &labels, None);
+    let found = motions_of_parts(&tactile, false, &labels, None, &Numbers::default());
     assert_eq!(found.keys().copied().collect::<Vec<_>>(), [7, 8, 9]);
     for ((w, k), found) in motions.iter().zip(ranks).zip(found.values()) {
         let error = unexplained(w, found);
@@ -48,7 +48,9 @@ fn motions_are_recovered_from_few_samples() {
 #[test]
 fn a_lower_rank_is_not_the_whole_motion() {
     let (motions, tactile, labels) = felt(&[5, 5]);
-    for (w, found) in motions.iter().zip(motions_of_parts(&tactile, false, &labels, Some(3)).values()) {
+    for (w, found) in
+        motions.iter().zip(motions_of_parts(&tactile, false, &labels, Some(3), &Numbers::default()).values())
+    {
         assert!(found.rank == 3 && unexplained(w, found) > 0.1);
     }
 }
@@ -56,16 +58,20 @@ fn a_lower_rank_is_not_the_whole_motion() {
 #[test]
 fn what_feels_nothing_has_no_motion() {
     let (motions, tactile, labels) = felt(&[4, 0, 3]);
-    let found = motions_of_parts(&tactile, false, &labels, None);
+    let found = motions_of_parts(&tactile, false, &labels, None, &Numbers::default());
     assert_eq!(found.values().map(|own| own.rank > 0).collect::<Vec<_>>(), [true, false, true]);
     assert!(unexplained(&motions[2], &found[&9]) < 1e-3);
     let still = Tactile { samples: 9, pressures: vec![0.0; 18] };
-    assert!(motions_of_parts(&still, false, &[Some(0), Some(1)], None).values().all(|own| own.rank == 0));
+    assert!(
+        motions_of_parts(&still, false, &[Some(0), Some(1)], None, &Numbers::default())
+            .values()
+            .all(|own| own.rank == 0)
+    );
     // A single sensor that feels something at a single sample, and one that is left out.
     let mut once = still.clone();
     once.pressures[3] = 1.0;
     for rank in [None, Some(6)] {
-        let found = motions_of_parts(&once, false, &[Some(0), None], rank);
+        let found = motions_of_parts(&once, false, &[Some(0), None], rank, &Numbers::default());
         assert!(found.len() == 1 && found[&0].basis.iter().all(|value| value.is_finite()));
     }
 }
@@ -91,7 +97,9 @@ fn cylinders(unit: f32) -> (Vec<Vec<f64>>, Tactile, Vec<Option<usize>>) {
 fn the_ends_of_a_cylinder_complete_its_motion() {
     let (motions, tactile, labels) = cylinders(1.0);
     for rank in [None, Some(5)] {
-        for (w, found) in motions.iter().zip(motions_of_parts(&tactile, false, &labels, rank).values()) {
+        for (w, found) in
+            motions.iter().zip(motions_of_parts(&tactile, false, &labels, rank, &Numbers::default()).values())
+        {
             assert!(unexplained(w, found) < 1e-3 && found.rank >= 5, "{}", unexplained(w, found));
         }
     }
@@ -101,7 +109,7 @@ fn the_ends_of_a_cylinder_complete_its_motion() {
 fn the_unit_of_pressure_changes_nothing() {
     let sizes = |unit: f32| {
         let (_, tactile, labels) = cylinders(unit);
-        let found = motions_of_parts(&tactile, false, &labels, None);
+        let found = motions_of_parts(&tactile, false, &labels, None, &Numbers::default());
         let size = |own: &MotionSubspace, at: usize| {
             own.basis.iter().skip(at).step_by(own.rank).map(|w| w * w).sum::<f64>() / SAMPLES as f64
         };

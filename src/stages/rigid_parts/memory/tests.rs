@@ -55,7 +55,7 @@ fn told(felt: &Felt, sensors: usize) -> (Mat<f64>, Mat<f64>, [usize; 2], [u64; 3
     let mut after = self::felt(0.0);
     own.complete_roots(&mut after);
     let numbers = [own.description_length, own.freedom, own.variance()].map(f64::to_bits);
-    (own.predicted(), after.completed, [own.rank(), own.present(felt.tolerance)], numbers)
+    (own.predicted(), after.completed, [own.rank(), own.present(felt, felt.tolerance)], numbers)
 }
 
 #[test]

@@ -6,6 +6,7 @@ use super::super::memory::Memory;
 use super::super::roots::Roots;
 use super::*;
 use crate::numerics::rng::stream;
+use crate::stages::numbers::Numbers;
 
 /// What 24 sensors on each of two parts feel, whose motions of rank four differ by a share of their size; and noise of such a size,
 /// as a share of the largest root.
@@ -21,8 +22,16 @@ fn felt(difference: f64, noise: f64) -> Felt {
     });
     let sizes = vec![1.0; 500];
     let roots = Roots { values, thresholds: sizes.clone(), signed: false }.equalised(&sizes, 0.0);
-    let completed = Completion::new(&roots).velocities;
-    Felt { roots, completed, sizes, tolerance: 2e-5, iterations: [24, 100], memory: Memory::default() }
+    let completed = Completion::new(&roots, Numbers::default().completion_ridge).velocities;
+    Felt {
+        roots,
+        completed,
+        sizes,
+        tolerance: 2e-5,
+        iterations: [24, 100],
+        numbers: Numbers::default(),
+        memory: Memory::default(),
+    }
 }
 
 fn found(felt: &Felt) -> (Vec<Vec<usize>>, Vec<usize>) {

@@ -82,7 +82,7 @@ fn an_error_of_second_order_settles_a_part_and_not_two() {
     // Of the largest rank, so that no component is left for the error.
     let mut search = search(6, 0.01, 0.0);
     assert_eq!(separated(&mut search, &[part(0), part(2), part(3)]), None);
-    (search.felt.tolerance, search.felt.iterations) = LEVELS[0];
+    (search.felt.tolerance, search.felt.iterations) = (2e-5, ITERATIONS[0]);
     let learned = |own: Vec<usize>| Cluster::learned_longer(&search.felt, own);
     for own in [part(0), part(1)].map(learned) {
         assert!(
@@ -100,7 +100,7 @@ fn parts_are_separated_where_no_cluster_is_settled_but_one_leaves_much_at_all_sp
     // The error of the last two grows with the speed, but is too even over time to be told from the motion of two parts.
     let new = || search_at_speeds(6, [0.0, 0.0, 0.01, 0.01], 0.0, 0.8);
     let mut search = new();
-    (search.felt.tolerance, search.felt.iterations) = LEVELS[0];
+    (search.felt.tolerance, search.felt.iterations) = (2e-5, ITERATIONS[0]);
     let clusters = together().map(|own| Cluster::learned_longer(&search.felt, own));
     assert!(!clusters.iter().any(|own| search.is_settled(own)));
     assert_eq!(search.left_by(&clusters), [0, 1, 3]);
