@@ -60,9 +60,10 @@ const MAX_SAMPLES: usize = 20_000;
 /// Largest residual at which the motion of its part explains a sensor, as a share of the mean square of the sensor's roots: where few
 /// sensors are noisy, and where most are.
 const MAX_RESIDUAL: [f64; 2] = [0.05, 0.2];
-/// Shares of sensors that are explained from which on rigid parts fit a recording, and may fit it.
-const GOOD: f64 = 0.8;
-const DOUBTFUL: f64 = 0.65;
+/// Shares of sensors that are explained from which on rigid parts fit a recording, and may fit it. On calibration data it was at least
+/// 0.90 where they fit, and at most 0.71 where sensors were read at different times (docs/estimate.md).
+const GOOD: f64 = 0.9;
+const DOUBTFUL: f64 = 0.8;
 /// Different values up to which a sensor has levels, such as on and off.
 const LEVELS: usize = 8;
 /// Samples below which a recording is short. About a third of such recordings, of movements of people and animals, have a wrong tree
@@ -79,10 +80,11 @@ const SIMILAR: f64 = 0.1;
 /// Whether rigid parts explain what sensors felt. The first of these that applies:
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Verdict {
-    /// Parts and tree mean nothing. Rigid parts explain fewer than 65 % of the sensors, sensors do not read 0 at rest, the movement repeats
-    /// itself, or few sensors feel something at a time (not tested where most sensors are noisy).
+    /// Parts and tree mean nothing. Rigid parts explain fewer than 80 % of the sensors, sensors do not read 0 at rest, the movement repeats
+    /// itself in one rhythm, or few sensors feel something at a time (not tested where most sensors are noisy).
     DoesNotFit,
-    /// Rigid parts explain at least 80 % of the sensors, over 1,000 samples or more, and the movement does not come back to similar states.
+    /// Rigid parts explain at least 90 % of the sensors, over 1,000 samples or more, and the movement neither repeats itself nor comes back
+    /// to similar states.
     Good,
     /// All else.
     Doubtful,
@@ -125,17 +127,21 @@ impl Fit {
         let explained = count as f64 / parts.labels.len() as f64;
         let has_offset = has_offset(&recording.tactile, recording.signed);
         let is_stroked = !is_noisy && few_at_a_time(&recording.tactile);
-        let repeats_itself = comes_back && novelty < LOOP;
+        let is_loop = novelty < LOOP;
+        let keeps_step = is_loop && comes_back;
         let verdict = match explained {
-            _ if has_offset || is_stroked || repeats_itself => Verdict::DoesNotFit,
-            share if share >= GOOD && recording.tactile.samples >= SHORT && !comes_back => Verdict::Good,
+            _ if has_offset || is_stroked || keeps_step => Verdict::DoesNotFit,
+            share if share >= GOOD && recording.tactile.samples >= SHORT && !comes_back && !is_loop => {
+                Verdict::Good
+            }
             share if share >= DOUBTFUL => Verdict::Doubtful,
             _ => Verdict::DoesNotFit,
         };
         let cause = match verdict {
             Verdict::Good => None,
             _ if has_offset => Some(OFFSET),
-            _ if repeats_itself => Some(REPETITION),
+            _ if keeps_step => Some(REPETITION),
+            _ if explained >= GOOD && is_loop && !is_stroked => Some(REPETITION),
             _ if explained >= GOOD && comes_back && !is_stroked => Some(SIMILARITY),
             _ => Some(cause(&recording.tactile, is_noisy, is_stroked)),
         };

@@ -10,7 +10,7 @@ use libfuzzer_sys::fuzz_target;
 fuzz_target!(|data: &[u8]| {
     // The first byte says which format the others have.
     let Some((kind, rest)) = data.split_first() else { return };
-    let name = ["m.stl", "m.obj", "m.dae", "m.msh"][usize::from(kind % 4)];
+    let name = ["m.stl", "m.obj", "m.dae", "m.msh", "m.gltf", "m.glb"][usize::from(kind % 6)];
     file(name, rest);
     let robot = format!(
         "<robot><link name='a'><visual><geometry><mesh filename='{name}'/></geometry></visual></link></robot>"

@@ -25,7 +25,7 @@ class Fit:
         Whether they do. If it is "does not fit", parts and tree mean nothing: too few sensors are explained, few sensors feel something
         at a time, the movement repeats itself, or sensors do not read 0 at rest.
     explained : float
-        The share of sensors that the motion of a part explains, 0 to 1. From 0.8 on the verdict is good, from 0.65 on doubtful. Below
+        The share of sensors that the motion of a part explains, 0 to 1. From 0.9 on the verdict is good, from 0.8 on doubtful. Below
         1,000 samples it is doubtful at best.
     novelty : float
         The share of what is felt at a sample that the most similar other state leaves, 0 to 1, the median over samples. Below 0.001 the

@@ -4,16 +4,20 @@ use std::collections::BTreeMap;
 
 use super::*;
 
-/// The verdict on a recording of 12 sensors on one part that explains all.
-fn explained(recording: &Recording, novelty: f64) -> Fit {
-    let parts = RigidParts {
+/// One part of 12 sensors, of which it explains all.
+fn one_part() -> RigidParts {
+    RigidParts {
         labels: vec![0; 12],
         residuals: vec![0.0; 12],
         alternatives: vec![Vec::new(); 12],
         unassigned: Vec::new(),
         motions: BTreeMap::new(),
-    };
-    Fit::new(&parts, recording, novelty, novelty < SIMILAR)
+    }
+}
+
+/// The verdict on a recording of these sensors.
+fn explained(recording: &Recording, novelty: f64) -> Fit {
+    Fit::new(&one_part(), recording, novelty, novelty < SIMILAR)
 }
 
 #[test]
@@ -27,6 +31,11 @@ fn whatever_is_explained_a_short_recording_is_doubtful_and_one_that_repeats_or_h
     assert_eq!((fit(SHORT, 1e-4).verdict, fit(SHORT, 1e-4).cause), (Verdict::DoesNotFit, Some(REPETITION)));
     let similar = fit(SHORT, 0.01);
     assert_eq!((similar.verdict, similar.cause), (Verdict::Doubtful, Some(SIMILARITY)));
+    // A loop of many motions, as a walk that was recorded once and repeated.
+    let pressures = (0..12 * SHORT).map(|at| (at % 7) as f32).collect();
+    let recording = Recording::new(Tactile { samples: SHORT, pressures });
+    let looped = Fit::new(&one_part(), &recording, 1e-4, false);
+    assert_eq!((looped.verdict, looped.cause), (Verdict::Doubtful, Some(REPETITION)));
     let short = fit(SHORT - 1, 0.1);
     assert_eq!((short.verdict, short.explained), (Verdict::Doubtful, 1.0));
     assert!(short.cause.is_some());

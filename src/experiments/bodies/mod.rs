@@ -1,6 +1,8 @@
 //! Study how often parts and tree of any body are found from touch alone, beside other methods on the same pressures.
 
+mod components;
 mod design;
+mod joining;
 mod movement;
 mod page;
 mod peers;

@@ -4,7 +4,7 @@ use rand_distr::{Distribution, StandardNormal};
 use serde::{Deserialize, Serialize};
 
 use super::design::{Design, Recording, StudyBody, Way};
-use super::peers;
+use super::{components, joining, peers};
 use crate::estimate::estimate;
 use crate::numerics::rng::stream;
 use crate::recording::Recording as Cleaned;
@@ -68,6 +68,10 @@ pub(super) struct Row {
     pub nearest_right: bool,
     /// The same of the tree of most information between the estimated parts.
     pub chow_liu_right: bool,
+    /// The same of the tree of most information between the principal components of the estimated parts.
+    pub components_right: bool,
+    /// The same of neighbour joining on the correlations of joint speeds.
+    pub joining_right: bool,
     /// Number of parts of the DPGMM-LJ's most probable sample.
     pub dpgmm_lj_parts: Option<usize>,
     /// Whether its tree is right.
@@ -164,6 +168,8 @@ impl Movement<'_> {
             tree_of_true_parts_right: false,
             nearest_right: false,
             chow_liu_right: false,
+            components_right: false,
+            joining_right: false,
             dpgmm_lj_parts: None,
             dpgmm_lj_right: false,
             dpgmm_prim_right: false,
@@ -205,6 +211,8 @@ impl Movement<'_> {
             tree_of_true_parts_right: scored(&truth.labels, &tree_of_true_parts).tree_correct,
             nearest_right: scored(labels, &nearest).tree_correct,
             chow_liu_right: scored(labels, &chow_liu).tree_correct,
+            components_right: scored(labels, &components::tree(labels, tactile)).tree_correct,
+            joining_right: scored(labels, &joining::tree(joints)).tree_correct,
             dpgmm_lj_parts: mixtures.as_ref().map(|samples| parts(&samples[0].labels)),
             dpgmm_lj_right: mixture_right(0),
             dpgmm_prim_right: mixture_right(1),

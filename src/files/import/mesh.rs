@@ -1,6 +1,7 @@
 //! Read the mesh of a shape, find the box around it, and spread sensors evenly over it.
 
 mod dae;
+mod gltf;
 mod read;
 mod simplified;
 
@@ -38,7 +39,7 @@ pub(super) struct Mesh {
     half_axes: Option<Column<f64>>,
 }
 
-/// Reads a mesh, in the unit of its file (COLLADA: in m).
+/// Reads a mesh, in the unit of its file (COLLADA, glTF: in m).
 ///
 /// # Errors
 /// If the file cannot be read, or holds no mesh of a known format.

@@ -1,17 +1,17 @@
-//! Read files of meshes: STL, OBJ, COLLADA (.dae), and MuJoCo's MSH.
+//! Read files of meshes: STL, OBJ, COLLADA (.dae), glTF (.gltf, .glb), and MuJoCo's MSH.
 
 use std::path::Path;
 
 use mesh_loader::{Loader, Scene};
 use nalgebra::Vector3 as Column;
 
-use super::{MOST_TRIANGLES, Mesh, dae, too_many};
+use super::{MOST_TRIANGLES, Mesh, dae, gltf, too_many};
 use crate::files::import::document::Wrong;
 
 /// Most bytes of a file.
 const MOST_BYTES: u64 = 512 << 20;
 
-/// Reads a mesh, in the unit of its file (COLLADA: in m).
+/// Reads a mesh, in the unit of its file (COLLADA, glTF: in m).
 ///
 /// # Errors
 /// If the file cannot be read, or holds no mesh of a known format.
@@ -32,8 +32,15 @@ pub(super) fn read(path: &Path) -> Result<Mesh, Wrong> {
         "stl" => Loader::default().load_stl_from_slice(&bytes, name),
         "obj" => return obj(&text()).and_then(Mesh::new).map_err(wrong),
         "dae" => return dae::triangles(&text()).and_then(Mesh::new).map_err(wrong),
+        "gltf" | "glb" => {
+            return gltf::triangles(&bytes, path, MOST_BYTES).and_then(Mesh::new).map_err(wrong);
+        }
         "msh" => return msh(&bytes).map_err(wrong),
-        _ => return Err(wrong("is none of .stl, .obj, .dae and .msh; convert it to one of them".to_owned())),
+        _ => {
+            return Err(wrong(
+                "is none of .stl, .obj, .dae, .gltf, .glb and .msh; convert it to one of them".to_owned(),
+            ));
+        }
     };
     scene.map_err(|error| error.to_string()).and_then(|scene| Mesh::new(triangles(&scene)?)).map_err(wrong)
 }

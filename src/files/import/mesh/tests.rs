@@ -126,6 +126,22 @@ fn written(folder: &Path) -> Vec<std::path::PathBuf> {
         list(corners.concat().iter().map(|number| (2.0 * number).to_string()).collect()),
         list(faces.concat().iter().map(ToString::to_string).collect()),
     );
+    // Its y is up.
+    let mut own = floats(&corners.map(|[x, y, z]| [x, z, -y]).concat());
+    own.extend(faces.concat().iter().flat_map(|at| (*at as u16).to_le_bytes()));
+    let gltf = |uri: &str| {
+        format!(
+            r#"{{"asset":{{"version":"2.0"}},"scene":0,"scenes":[{{"nodes":[0]}}],"nodes":[{{"mesh":0}}],"meshes":[{{"primitives":[
+            {{"attributes":{{"POSITION":0}},"indices":1}}]}}],"accessors":[{{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3"}},
+            {{"bufferView":1,"componentType":5123,"count":12,"type":"SCALAR"}}],"bufferViews":[{{"buffer":0,"byteLength":48}},
+            {{"buffer":0,"byteOffset":48,"byteLength":24}}],"buffers":[{{"byteLength":72{uri}}}]}}"#
+        )
+    };
+    let chunk = |kind: &[u8], bytes: &[u8]| [&(bytes.len() as u32).to_le_bytes(), kind, bytes].concat();
+    let glb = [chunk(b"JSON", gltf("").as_bytes()), chunk(b"BIN\0", &own)].concat();
+    let glb = [&b"glTF\x02\0\0\0"[..], &(12 + glb.len() as u32).to_le_bytes(), &glb].concat();
+    let code = base64::Engine::encode(&base64::engine::general_purpose::STANDARD, &own);
+    let gltf = gltf(&format!(r#","uri":"data:application/octet-stream;base64,{code}""#));
     let files = [
         ("t.obj", obj.into_bytes()),
         ("text.STL", text.into_bytes()),
@@ -133,6 +149,8 @@ fn written(folder: &Path) -> Vec<std::path::PathBuf> {
         ("called-text.stl", called_text),
         ("t.msh", msh),
         ("t.dae", dae.into_bytes()),
+        ("t.gltf", gltf.into_bytes()),
+        ("t.glb", glb),
     ];
     let write = |(name, bytes): (&str, Vec<u8>)| {
         std::fs::write(folder.join(name), bytes).unwrap();
@@ -181,7 +199,11 @@ fn damaged_files_give_a_mesh_or_a_line() {
         assert!(refused > 10, "{}: {refused}", path.display());
     }
     std::fs::write(folder.path().join("a.ply"), "ply").unwrap();
-    assert!(read(&folder.path().join("a.ply")).unwrap_err().contains("is none of .stl, .obj, .dae and .msh"));
+    assert!(
+        read(&folder.path().join("a.ply"))
+            .unwrap_err()
+            .contains("is none of .stl, .obj, .dae, .gltf, .glb and .msh")
+    );
     assert!(read(&folder.path().join("b.stl")).unwrap_err().contains("cannot be read"));
 }
 

@@ -1,0 +1,98 @@
+//! A tree over parts by the principal components of what each of them feels.
+//!
+//! The mutual information of two parts is that of their six leading principal components, taken as Gaussian. The tree is that of most
+//! information (Chow and Liu 1968). It does not know that a joint is one point of both of its parts.
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::stages::rigid_parts::stratified;
+use crate::stages::sense::Tactile;
+use crate::stages::tree::{Edge, prim};
+
+/// Leading components of each part: as many as a rigid motion has.
+const COMPONENTS: usize = 6;
+/// Samples that are used, spread over all.
+const MAX_SAMPLES: usize = 20_000;
+/// Share of the largest variance of a part beyond which a component tells something.
+const LEAST: f64 = 1e-9;
+
+/// The tree over the parts with these labels, 0, 1, …, of M sensors that felt M × T pressures, none of them missing.
+pub(super) fn tree(labels: &[usize], tactile: &Tactile) -> Vec<Edge> {
+    let parts = labels.iter().max().map_or(0, |last| last + 1);
+    let samples: Vec<usize> = stratified(tactile.samples, MAX_SAMPLES).collect();
+    let own: Vec<DMatrix<f64>> = (0..parts)
+        .map(|part| {
+            let series = tactile.series().zip(labels).filter(|(_, label)| **label == part);
+            let roots = series
+                .flat_map(|(series, _)| samples.iter().map(move |&t| f64::from(series[t].max(0.0)).sqrt()));
+            let roots: Vec<f64> = roots.collect();
+            leading(DMatrix::from_vec(samples.len(), roots.len() / samples.len(), roots))
+        })
+        .collect();
+    let mut information = DMatrix::zeros(parts, parts);
+    for (a, b) in (0..parts).flat_map(|a| (a + 1..parts).map(move |b| (a, b))) {
+        information[(a, b)] = mutual_information(&own[a].tr_mul(&own[b]));
+        information[(b, a)] = information[(a, b)];
+    }
+    let nodes: Vec<usize> = (0..parts).collect();
+    prim(&nodes, |child, parent| -information[(child, parent)])
+}
+
+/// The leading components of what a part feels over time, samples × sensors, each of length 1 over all samples.
+fn leading(mut roots: DMatrix<f64>) -> DMatrix<f64> {
+    for mut series in roots.column_iter_mut() {
+        let mean = series.mean();
+        series.add_scalar_mut(-mean);
+    }
+    let eigen = roots.tr_mul(&roots).symmetric_eigen();
+    let mut order: Vec<usize> = (0..eigen.eigenvalues.len()).collect();
+    order.sort_by(|&a, &b| eigen.eigenvalues[b].total_cmp(&eigen.eigenvalues[a]));
+    let largest = order.first().map_or(0.0, |&first| eigen.eigenvalues[first]);
+    let tells = |at: &usize| eigen.eigenvalues[*at] > LEAST * largest;
+    let of =
+        |at: usize| -> DVector<f64> { &roots * eigen.eigenvectors.column(at) / eigen.eigenvalues[at].sqrt() };
+    let found: Vec<DVector<f64>> = order.into_iter().take(COMPONENTS).filter(tells).map(of).collect();
+    if found.is_empty() { DMatrix::zeros(roots.nrows(), 0) } else { DMatrix::from_columns(&found) }
+}
+
+/// Of two Gaussian variables whose components have these correlations, nats: −½ ln det(1 − R Rᵀ).
+fn mutual_information(correlations: &DMatrix<f64>) -> f64 {
+    let n = correlations.nrows();
+    // Two parts that feel the same would have infinitely much.
+    let left = DMatrix::identity(n, n) - correlations * correlations.transpose();
+    -0.5 * f64::max(left.determinant(), f64::MIN_POSITIVE).ln()
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::RngExt;
+
+    use super::*;
+    use crate::numerics::rng::stream;
+
+    #[test]
+    fn parts_that_share_more_of_their_motion_are_joined() {
+        // Three parts of four sensors. The second feels half of what the first does, and the third half of what the second does.
+        let mut rng = stream(7, 1, "components", 0);
+        let samples = 3000;
+        let mut series = vec![Vec::new(); 12];
+        for _ in 0..samples {
+            let mut uniform = || rng.random_range(0.0_f32..1.0);
+            let first: [f32; 4] = std::array::from_fn(|_| uniform());
+            let second = first.map(|own| own + uniform());
+            let third = second.map(|own| own + 2.0 * uniform());
+            for (at, root) in [third, first, second].concat().into_iter().enumerate() {
+                series[at].push(root * root);
+            }
+        }
+        let tactile = Tactile { samples, pressures: series.concat() };
+        let labels: Vec<usize> = (0..12).map(|sensor| sensor / 4).collect();
+        let tree = tree(&labels, &tactile);
+        let mut pairs: Vec<_> =
+            tree.iter().map(|edge| (edge.child.min(edge.parent), edge.child.max(edge.parent))).collect();
+        pairs.sort_unstable();
+        assert_eq!(pairs, [(0, 2), (1, 2)]);
+        assert_eq!(mutual_information(&DMatrix::zeros(3, 2)), 0.0);
+        assert!((mutual_information(&DMatrix::from_element(1, 1, 0.6)) + 0.5 * 0.64_f64.ln()).abs() < 1e-12);
+    }
+}
