@@ -197,19 +197,19 @@ fn a_movement_in_one_gait_does_not_tell_parts_apart_and_estimate_says_so() {
     assert_eq!(fit.verdict, Verdict::Good, "{fit}");
 }
 
-/// 10⁵ samples: far away from where it began, a body still moves within what the step resolves, by the same rhythm.
+/// Four times as long as in the study of rhythmic movement: far away from where it began, a body still moves within what the step resolves, by the same rhythm.
 #[test]
 fn long_movements_of_all_kinds_of_joints_stay_finite_and_resolved() {
     let mut settings = swimming();
     // As in the study of bodies.
     (settings.physics.step, settings.motion.epoch) = (0.02, 250);
-    (settings.physics.duration, settings.motion.targets) = (10_000.0, Targets::Each);
+    (settings.physics.duration, settings.motion.targets) = (4000.0, Targets::Each);
     // Universal joints, hinges, and a ball joint with both.
     let names = ["paper", "snake", "quadruped"];
     names.par_iter().for_each(|name| {
         let agent = read_body(&root().join(format!("bodies/{name}.toml"))).unwrap().agent;
         let trajectory = moved(&agent, &settings, 1);
-        assert_eq!(trajectory.samples(), 100_000);
+        assert_eq!(trajectory.samples(), 40_000);
         let finite = |x: &f64| x.is_finite() && x.abs() < 1e5;
         assert!(trajectory.poses.iter().all(|pose| pose.position.iter().all(finite)), "{name}");
         let resolution = trajectory.resolution;
@@ -217,7 +217,7 @@ fn long_movements_of_all_kinds_of_joints_stay_finite_and_resolved() {
         // No joint drifts away from where it swings.
         for joint in 0..trajectory.joints {
             for axis in 0..agent.joints[joint].freedom.angles() {
-                let late = angles(&trajectory, joint, axis, 80_000);
+                let late = angles(&trajectory, joint, axis, 32_000);
                 let largest = late.iter().fold(0.0, |most: f64, angle| most.max(angle.abs()));
                 assert!((0.2..0.8).contains(&largest), "{name}, joint {joint}: {largest} rad");
             }

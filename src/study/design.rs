@@ -162,7 +162,7 @@ pub(crate) struct Factor {
 }
 
 /// A value of an open setting.
-#[derive(Debug, Clone, Deserialize)]
+#[derive(Debug, Clone, Default, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Choice {
     /// Name in tables and pictures; its settings in a line if it is empty.

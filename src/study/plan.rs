@@ -8,9 +8,9 @@ use std::str::FromStr;
 use toml::Table;
 
 use super::choices::{flat, merge};
-use super::design::{BASE, Choice, Design, Factor, Vary};
-use super::draw::drawn;
-use super::levels::SharedStages;
+use super::design::{BASE, Choice, Design, Factor, NamedConfiguration, Vary};
+use super::draw::{Drawn, drawn};
+use super::levels::{DrawCounts, SharedStages};
 use crate::settings::Settings;
 use crate::tasks::cache::Keys;
 use crate::tasks::error::ExperimentError;
@@ -44,72 +44,79 @@ impl FromStr for Selection {
     }
 }
 
+/// What distinguishes a configuration from the others of its design.
+struct Point<'a> {
+    name: String,
+    shared_stages: SharedStages,
+    seed: u64,
+    /// The option of each factor, if it does not have the base's value.
+    choices: Vec<Option<&'a Choice>>,
+}
+
 /// All configurations of a design.
 ///
 /// # Errors
 /// If the settings of one cannot be used; the message names it.
 pub(crate) fn plan(design: &Design) -> Result<Vec<Configuration>, ExperimentError> {
-    let mut all = match (design.vary, design.draws) {
-        (_, Some(draws)) => {
-            let points = drawn(design, draws).into_iter().enumerate();
-            let made = points.map(|(at, drawn)| {
-                let choices = chosen(design, &drawn.options);
-                let seed = design.seed + drawn.shared_stages.movement as u64;
-                configuration(design, at, (at + 1).to_string(), drawn.shared_stages, seed, &choices)
-            });
-            made.collect::<Result<Vec<_>, _>>()
-        }
-        (Some(Vary::Grid), None) => {
-            let made = combinations(design).into_iter().enumerate().map(|(at, options)| {
-                let options: Vec<Option<usize>> = options.into_iter().map(Some).collect();
-                let choices = chosen(design, &options);
-                let name = choices
-                    .iter()
-                    .flatten()
-                    .map(|choice| choice.label.as_str())
-                    .collect::<Vec<_>>()
-                    .join("; ");
-                configuration(design, at, name, UNNUMBERED, design.seed, &choices)
-            });
-            made.collect()
-        }
-        (Some(Vary::OneAtATime), None) => {
-            let nothing = vec![None; design.factors.len()];
-            let mut all = vec![(BASE.to_owned(), nothing.clone())];
-            for (at, factor) in design.factors.iter().enumerate() {
-                for choice in &factor.options {
-                    let mut choices = nothing.clone();
-                    choices[at] = Some(choice);
-                    all.push((format!("{}: {}", factor.name, choice.label), choices));
-                }
-            }
-            let made = all.into_iter().enumerate();
-            made.map(|(at, (name, choices))| {
-                configuration(design, at, name, UNNUMBERED, design.seed, &choices)
-            })
-            .collect()
-        }
+    let as_choice = |own: &NamedConfiguration| Choice { settings: own.settings.clone(), ..Choice::default() };
+    let named: Vec<Choice> = design.configurations.iter().map(as_choice).collect();
+    let points = match (design.vary, design.draws) {
+        (_, Some(draws)) => drawn_points(design, draws),
+        (Some(Vary::Grid), None) => grid(design),
+        (Some(Vary::OneAtATime), None) => one_at_a_time(design),
         (None, None) => {
-            let made = design.configurations.iter().enumerate().map(|(at, named)| {
-                let choice = Choice {
-                    label: String::new(),
-                    why: String::new(),
-                    settings: named.settings.clone(),
-                    gains: None,
-                    weight: None,
-                };
-                let made =
-                    configuration(design, at, named.name.clone(), UNNUMBERED, design.seed, &[Some(&choice)])?;
-                Ok(Configuration { labels: Vec::new(), ..made })
-            });
-            made.collect()
+            let names = design.configurations.iter().map(|own| own.name.clone());
+            names.zip(&named).map(|(name, choice)| unnumbered(design, name, vec![Some(choice)])).collect()
         }
-    }?;
+    };
+    let configurations = points.into_iter().enumerate().map(|(at, point)| configuration(design, at, point));
+    let mut all = configurations.collect::<Result<Vec<_>, _>>()?;
     check_simulations(design, &all)?;
     if design.draws.is_none() {
         number_stages(&mut all);
     }
     Ok(all)
+}
+
+/// Configurations that are drawn.
+fn drawn_points(design: &Design, draws: DrawCounts) -> Vec<Point<'_>> {
+    let point = |(at, drawn): (usize, Drawn)| Point {
+        name: (at + 1).to_string(),
+        shared_stages: drawn.shared_stages,
+        seed: design.seed + drawn.shared_stages.movement as u64,
+        choices: chosen(design, &drawn.options),
+    };
+    drawn(design, draws).into_iter().enumerate().map(point).collect()
+}
+
+/// All combinations of options.
+fn grid(design: &Design) -> Vec<Point<'_>> {
+    let point = |options: Vec<usize>| {
+        let options: Vec<Option<usize>> = options.into_iter().map(Some).collect();
+        let choices = chosen(design, &options);
+        let labels: Vec<&str> = choices.iter().flatten().map(|choice| choice.label.as_str()).collect();
+        unnumbered(design, labels.join("; "), choices)
+    };
+    combinations(design).into_iter().map(point).collect()
+}
+
+/// The base, and each option alone.
+fn one_at_a_time(design: &Design) -> Vec<Point<'_>> {
+    let nothing = vec![None; design.factors.len()];
+    let mut points = vec![unnumbered(design, BASE.to_owned(), nothing.clone())];
+    for (at, factor) in design.factors.iter().enumerate() {
+        for choice in &factor.options {
+            let mut choices = nothing.clone();
+            choices[at] = Some(choice);
+            points.push(unnumbered(design, format!("{}: {}", factor.name, choice.label), choices));
+        }
+    }
+    points
+}
+
+/// A point that is not drawn, with the seed of the design.
+fn unnumbered<'a>(design: &Design, name: String, choices: Vec<Option<&'a Choice>>) -> Point<'a> {
+    Point { name, shared_stages: UNNUMBERED, seed: design.seed, choices }
 }
 
 /// Of configurations that are not drawn, before the plan numbers what they share.
@@ -133,14 +140,8 @@ fn combinations(design: &Design) -> Vec<Vec<usize>> {
     design.factors.iter().fold(vec![Vec::new()], extend)
 }
 
-fn configuration(
-    design: &Design,
-    at: usize,
-    name: String,
-    shared_stages: SharedStages,
-    seed: u64,
-    choices: &[Option<&Choice>],
-) -> Result<Configuration, ExperimentError> {
+fn configuration(design: &Design, at: usize, point: Point) -> Result<Configuration, ExperimentError> {
+    let Point { name, shared_stages, seed, choices } = point;
     let (mut changes, mut gains) = (Table::new(), None);
     for choice in choices.iter().flatten() {
         merge(&mut changes, &choice.settings);
@@ -153,8 +154,10 @@ fn configuration(
         settings = overlaid(&changes)?;
     }
     settings.experiment.seed = seed;
+    // Named ones have no factors.
+    let of_factors = choices.iter().take(design.factors.len());
     let labels =
-        choices.iter().map(|choice| choice.map_or(String::new(), |choice| choice.label.clone())).collect();
+        of_factors.map(|choice| choice.map_or(String::new(), |choice| choice.label.clone())).collect();
     Ok(Configuration { number: at + 1, name, shared_stages, labels, changes, settings })
 }
 
