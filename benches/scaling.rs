@@ -14,7 +14,7 @@ use bodyschema::settings::Settings;
 use bodyschema::stages::agent::Agent;
 use bodyschema::stages::body_map::{BodyMap, ClassicalScaling};
 use bodyschema::stages::distance::{Distances, information_metric};
-use bodyschema::stages::numbers::Numbers;
+use bodyschema::stages::parameters::Parameters;
 use bodyschema::stages::quantise::{Symbols, quantise};
 use bodyschema::stages::schema::{Model, infer};
 use bodyschema::stages::sense::{Tactile, sense};
@@ -135,7 +135,7 @@ fn estimate_size(samples: usize, sensors: usize) -> Measured {
     measure(
         || (),
         |()| {
-            estimate(&recording, &settings.quantise, &Numbers::default(), &mut rng(), &|| ())
+            estimate(&recording, &settings.quantise, &Parameters::default(), &mut rng(), &|| ())
                 .expect("enough sensors")
         },
     )

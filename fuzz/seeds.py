@@ -147,13 +147,17 @@ put("mesh", "obj", b"\1" + "".join(f"v {words([corner])}\n" for corner in CORNER
     "".join(f"f {words([[at + 1 for at in face]])}\n" for face in FACES).encode() + b"f 1/1/1 2//2 3 4\nf -1 -2 -3\n")
 put("mesh", "msh", b"\3" + np.array([4, 0, 0, 4], "<u4").tobytes() + np.array(CORNERS, "<f4").tobytes() + np.array(FACES, "<u4").tobytes())
 places, order = np.array(CORNERS, "<f4").tobytes(), np.array(FACES, "<u2").tobytes()
-put("mesh", "gltf", b"\4" + json.dumps({
+gltf = lambda buffer: json.dumps({
     "nodes": [{"children": [1]}, {"mesh": 0, "scale": [1, 2, 1], "rotation": [0, 0, 1, 0]}],
     "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}, {"attributes": {"POSITION": 0}, "mode": 5}]}],
     "accessors": [{"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3"},
                   {"bufferView": 0, "byteOffset": 48, "componentType": 5123, "count": 12, "type": "SCALAR"}],
     "bufferViews": [{"buffer": 0, "byteLength": 72}],
-    "buffers": [{"uri": "data:;base64," + base64.b64encode(places + order).decode()}]}).encode())
+    "buffers": [buffer]}).encode()
+put("mesh", "gltf", b"\4" + gltf({"uri": "data:;base64," + base64.b64encode(places + order).decode()}))
+chunk = lambda kind, content: len(content).to_bytes(4, "little") + kind + content
+chunks = chunk(b"JSON", gltf({})) + chunk(b"BIN\0", places + order)
+put("mesh", "glb", b"\5glTF" + (2).to_bytes(4, "little") + (12 + len(chunks)).to_bytes(4, "little") + chunks)
 put("mesh", "dae", f"""\2<COLLADA><asset><unit meter="0.5"/></asset><library_geometries><geometry id="g"><mesh>
 <source id="p"><float_array>{words(CORNERS)}</float_array></source><vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
 <triangles><input semantic="VERTEX" source="#v" offset="0"/><p>{words(FACES[:2])}</p></triangles>

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""List the numbers in the code that decide what `estimate` finds: reproduce/constants.py [--check]
+"""List the parameters and constants that decide what `estimate` finds: reproduce/constants.py [--check]
 
-Reads those that can be set and the constants of its stages, with what is said of each there, and what influence.py found. Writes
-docs/shown/numbers/README.md. With --check, it compares them with that page instead. Needs Python 3.11, and no packages. Status: 0; 1 if
+Reads its parameters and the constants of its stages, with what is said of each there, and what influence.py found. Writes
+docs/shown/parameters/README.md. With --check, it compares them with that page instead. Needs Python 3.11, and no packages. Status: 0; 1 if
 the page is another one.
 """
 
@@ -14,7 +14,7 @@ import sys
 from estimated import read, revisions
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-PAGE = ROOT / "docs" / "shown" / "numbers" / "README.md"
+PAGE = ROOT / "docs" / "shown" / "parameters" / "README.md"
 # What `estimate` does in order, by the folder or file of src.
 STAGES = [
     ("stages/usable", "Which values and sensors are used"),
@@ -24,8 +24,8 @@ STAGES = [
     ("estimate", "The fit, and repeats"),
 ]
 INFLUENCE = PAGE.parent / "influence.csv"
-SETTABLE = ROOT / "src" / "stages" / "numbers.rs"
-NUMBER = re.compile(r"((?:^ +///[^\n]*\n)+)^ +([a-z_]+): (?:f64|usize) = ([^,\n]+),", re.M)
+SETTABLE = ROOT / "src" / "stages" / "parameters.rs"
+PARAMETER = re.compile(r"((?:^ +///[^\n]*\n)+)^ +([a-z_]+): (?:f64|usize) = ([^,\n]+),", re.M)
 CONSTANT = re.compile(r"((?:^ *///[^\n]*\n)*)^ *(?:pub(?:\([a-z]+\))? )?const ([A-Z_0-9]+): ([^=]+) = ([^;]+);", re.M)
 
 
@@ -35,7 +35,7 @@ def main():
         PAGE.parent.mkdir(parents=True, exist_ok=True)
         PAGE.write_text(text)
     elif not PAGE.exists() or PAGE.read_text() != text:
-        print("constants: docs/shown/numbers/README.md is not of these constants; run reproduce/constants.py", file=sys.stderr)
+        print("constants: docs/shown/parameters/README.md is not of these constants; run reproduce/constants.py", file=sys.stderr)
         return 1
     return 0
 
@@ -45,14 +45,15 @@ def page():
     can_be_set = settable()
     count = len(can_be_set) + sum(map(len, (rows for _, rows in tables)))
     lines = [
-        "# The numbers of `estimate`",
+        "# The parameters of `estimate`",
         "",
         f"The code of `bodyschema estimate` has {count} numbers. Most decide, or bound, what it finds; a few only bound its time and memory. They",
         "were chosen on calibration data ([seeds.toml](../../../reproduce/seeds.toml)). How each step uses them is in",
-        f"[estimate.md](../../estimate.md). {len(can_be_set)} can be set: `estimate --number NAME=VALUE`, and in Python",
-        "`estimate(touch, numbers={...})`. All others are constants, which were not varied. Made by `reproduce/constants.py` from the code.",
+        f"[estimate.md](../../estimate.md). {len(can_be_set)} are parameters that can be changed, to a hundredth to a hundred times the default:",
+        "`estimate --parameter NAME=VALUE`, and in Python `estimate(touch, parameters={...})`. All others are constants, which were not",
+        "varied. Made by `reproduce/constants.py` from the code.",
         "",
-        "## Numbers that can be set",
+        "## Parameters",
         "",
         *influence(can_be_set),
         "",
@@ -67,37 +68,38 @@ def page():
 
 
 def settable():
-    """The numbers that can be set: name, value, and what each is."""
-    found = NUMBER.findall(SETTABLE.read_text())
+    """The parameters: name, default, and what each is."""
+    found = PARAMETER.findall(SETTABLE.read_text())
     return [(name, value, meaning_of(comment)) for comment, name, value in found]
 
 
 def influence(can_be_set):
-    """What comes out with each number halved and doubled, where influence.py has tried it."""
+    """What comes out with each parameter halved and doubled, where influence.py has tried it."""
     if not INFLUENCE.exists():
-        return ["| number | value | what it is |", "|---|---|---|", *(f"| {name} | `{value}` | {said} |" for name, value, said in can_be_set)]
+        rows = [f"| {name} | `{value}` | {said} |" for name, value, said in can_be_set]
+        return ["How results change with each has not been counted yet.", "", "| parameter | default | what it is |", "|---|---|---|", *rows]
     rows = collections.defaultdict(list)
     for row in read(INFLUENCE):
-        rows[row["number"], row["value"]].append(row)
+        rows[row["parameter"], row["value"]].append(row)
     default = rows["", ""]
     data = collections.Counter(row["data"] for row in default)
     right = lambda own: sum(row["tree_right"] == "true" for row in own)
     index = lambda own: sum(float(row["ari"]) for row in own) / len(own)
-    decisive, table = [], []
+    decisive, counted, table = 0, 0, []
     for name, value, said in can_be_set:
         tried = [(other, rows[key, other]) for key, other in rows if key == name]
         cells = [f"{other}: {outcome(own, default)}, {index(own):.3f}" for other, own in sorted(tried, key=lambda one: float(one[0]))]
-        if any("(" in outcome(own, default) for _, own in tried):
-            decisive.append(name)
+        counted += bool(tried)
+        decisive += any("(" in outcome(own, default) for _, own in tried)
         table.append(f"| {name} | `{value}` | {' | '.join(cells or ['–', '–'])} | {said} |")
     return [
         f"`reproduce/influence.py` halved and doubled each, all others as they are (revision {revisions(default)}), on calibration data:",
         f"{', '.join(f'{count} of {name}' for name, count in data.items())}. With the defaults, {right(default)} of {len(default)} trees are",
         f"right, and the adjusted Rand index is {index(default):.3f} on average. Each cell has the value, how many trees are right, in",
-        "brackets how many became wrong (−) and right (+), and the mean index. A number counts as one that decides if it changes whether",
-        f"any tree is right (stated before the run): {len(decisive)} of {len(can_be_set)} do.",
+        "brackets how many became wrong (−) and right (+), and the mean index.",
+        f"{decisive} of the {counted} parameters that were tried change whether any tree is right.",
         "",
-        "| number | value | halved | doubled | what it is |",
+        "| parameter | default | halved | doubled | what it is |",
         "|---|---|---|---|---|",
         *table,
     ]

@@ -10,7 +10,7 @@ It updates
   It needs no run;
 - docs/settings.md: the table of open settings, from paper.toml, sensitivity.toml and docs/shown/searches.csv. It needs no run;
 - docs/shown/claims.md: the paper's sentences, claims and verdicts, from claims.toml and docs/shown. It needs no run;
-- docs/shown/numbers/: the constants of `estimate`, from the code. It needs no run;
+- docs/shown/parameters/: the parameters and constants of `estimate`, from the code. It needs no run;
 - article/values.toml: the numbers of the article, from docs/shown. It needs no run.
 
 What RESULTS does not hold is skipped, with a line on standard error. Needs Python 3.11, and no packages.

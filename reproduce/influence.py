@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""How much does each number of `estimate` that can be set matter? reproduce/influence.py [--only NAME] [--files FOLDER] [--keep FOLDER] [--out FOLDER]
+"""How much does each parameter of `estimate` matter? reproduce/influence.py [--only NAME] [--files FOLDER] [--keep FOLDER] [--out FOLDER]
 
-Estimates calibration data with each number halved and doubled, all others as they are: bodies that move at random, without and with
+Estimates calibration data with each parameter halved and doubled, all others as they are: bodies that move at random, without and with
 noise, robots of boxes, and recorded movements. They are few and small, so that this takes some two hours on two cores. Writes
-influence.csv into the folder of --out, which is docs/shown/numbers; constants.py shows it. What is felt is kept in the folder of --keep,
+influence.csv into the folder of --out, which is docs/shown/parameters; constants.py shows it. What is felt is kept in the folder of --keep,
 and recordings are downloaded into that of --files. A run that was stopped continues. Needs Python 3.11 and NumPy. Status: 0, or 2 on an
 error.
 """
@@ -27,7 +27,7 @@ import boxes
 import constants
 from estimated import ROOT, TRUTH, downloaded, estimated, noisy, resumed, revision, run
 
-COLUMNS = ["number", "value", "data", "recording", "fit", *TRUTH, "revision"]
+COLUMNS = ["parameter", "value", "data", "recording", *TRUTH, "revision"]
 FACTORS = [0.5, 2.0]
 # All are calibration data (seeds.toml, recordings.toml). Bodies of seven parts at most move with one seed.
 SEED, BODIES = 37, ["arm", "chain-3", "chain-6", "fork", "star", "tee", "y"]
@@ -44,41 +44,44 @@ RECORDINGS = ["bye-sad-1", "guide-musical-1", "punch-normal-1", "walk-elderly-2"
 
 
 def main():
-    parser = argparse.ArgumentParser(description="Estimate with each number halved and doubled.")
+    parser = argparse.ArgumentParser(description="Estimate with each parameter halved and doubled.")
     names = [name for name, _, _ in constants.settable()]
-    parser.add_argument("--only", choices=names, help="only this number, and the default")
+    parser.add_argument("--only", choices=names, help="only this parameter, and the defaults; other rows stay as they are")
     parser.add_argument("--files", type=pathlib.Path, default=ROOT / "results" / "recordings", help="folder of the .bvh files")
     parser.add_argument("--keep", type=pathlib.Path, default=ROOT / "results" / "influence", help="folder of what is felt")
     parser.add_argument("--out", type=pathlib.Path, default=constants.PAGE.parent, help="folder to write to")
     arguments = parser.parse_args()
     arguments.out.mkdir(parents=True, exist_ok=True)
     felt = everything_felt(arguments.files, arguments.keep)
-    jobs = [{"number": "", "value": ""}]
+    jobs = [{"parameter": "", "value": ""}]
     for name, value, _ in constants.settable():
         if name == (arguments.only or name):
-            jobs += [{"number": name, "value": f"{changed(value, factor):g}"} for factor in FACTORS]
+            jobs += [{"parameter": name, "value": f"{changed(value, factor):g}"} for factor in FACTORS]
     # A recording for each core takes less time than all cores for each.
     os.environ["RAYON_NUM_THREADS"] = "1"
     current = revision()
-    resumed(arguments.out / "influence.csv", COLUMNS, [{**job, "revision": current} for job in jobs], lambda **job: measured(job, felt))
+    jobs = [{**job, "revision": current} for job in jobs]
+    stays = lambda row: row["revision"] == current
+    order = lambda row: ["", *names].index(row["parameter"])
+    resumed(arguments.out / "influence.csv", COLUMNS, jobs, lambda **job: measured(job, felt), stays, order)
     return 0
 
 
 def changed(value, factor):
-    """A number times a factor; a whole number stays one, rounded up."""
+    """A value times a factor; a whole number stays one, rounded half up."""
     product = float(value) * factor
     return product if set(value) & set(".e") else int(product + 0.5)
 
 
 def measured(job, felt):
-    """What comes out of each recording, with a number changed: a row each."""
-    words = [f"--number={job['number']}={job['value']}"] if job["number"] else []
+    """What comes out of each recording, with a parameter changed: a row each."""
+    words = [f"--parameter={job['parameter']}={job['value']}"] if job["parameter"] else []
 
     def row(one):
         data, name, folder = one
         with tempfile.TemporaryDirectory() as found:
-            summary, truth = estimated(folder, pathlib.Path(found), 1, *words)
-        return {**job, "data": data, "recording": name, "fit": summary["fit"], **truth}
+            _, truth = estimated(folder, pathlib.Path(found), 1, *words)
+        return {**job, "data": data, "recording": name, **truth}
 
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         return list(pool.map(row, felt))

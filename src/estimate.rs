@@ -8,7 +8,7 @@
 //! use bodyschema::numerics::rng::stream;
 //! use bodyschema::recording::Recording;
 //! use bodyschema::settings::{Base, Settings};
-//! use bodyschema::stages::numbers::Numbers;
+//! use bodyschema::stages::parameters::Parameters;
 //! # use bodyschema::stages::{agent::Agent, sense::sense, simulate::simulate};
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
 //! # let mut settings = Settings::paper();
@@ -21,7 +21,7 @@
 //! // `tactile` may come from a file: bodyschema::files::touch::read_touch("tactile.npy".as_ref())?
 //! let recording = Recording::new(tactile);
 //! let levels = Settings::load_over(Some(Base::ESTIMATE), None)?.quantise;
-//! let found = estimate(&recording, &levels, &Numbers::default(), &mut stream(1, 1, "co-motion", 0), &|| ())?;
+//! let found = estimate(&recording, &levels, &Parameters::default(), &mut stream(1, 1, "co-motion", 0), &|| ())?;
 //! for edge in &found.joints.tree {
 //!     let support = 100.0 * found.joints.support(edge);
 //!     println!("part {} is joined to part {} (bootstrap support {support:.0} %)", edge.child, edge.parent);
@@ -47,7 +47,7 @@ use self::strokes::few_at_a_time;
 use crate::recording::Recording;
 use crate::stages::distance::{Distances, information_metric};
 use crate::stages::joints::{Joints, refine};
-use crate::stages::numbers::Numbers;
+use crate::stages::parameters::Parameters;
 use crate::stages::quantise::{Quantise, quantise};
 use crate::stages::rigid_parts::{MIN_SENSORS, RigidParts, rigid_parts, stratified};
 use crate::stages::sense::Tactile;
@@ -141,7 +141,7 @@ impl Fit {
             Verdict::Good => None,
             _ if has_offset => Some(OFFSET),
             _ if keeps_step => Some(REPETITION),
-            _ if explained >= GOOD && is_loop && !is_stroked => Some(REPETITION),
+            _ if explained >= GOOD && is_loop && !is_stroked => Some(LOOPED),
             _ if explained >= GOOD && comes_back && !is_stroked => Some(SIMILARITY),
             _ => Some(cause(&recording.tactile, is_noisy, is_stroked)),
         };
@@ -189,7 +189,8 @@ pub struct TooFewSensors {
 
 /// Estimates the parts and the tree.
 ///
-/// In: a [`Recording`], how its pressures are quantised for distances (`levels`), and the `numbers` that decide. Out: the part of each of its sensors, and the tree over
+/// In: a [`Recording`], how its pressures are quantised for distances (`levels`), and the
+/// parameters. Out: the part of each of its sensors, and the tree over
 /// the parts with the bootstrap support of each edge, given the parts. Calls `tick` after each of the three steps: distances,
 /// parts, joints. The same recording and state of `rng` give the same bytes on one kind of processor, whatever the number of threads.
 ///
@@ -198,7 +199,7 @@ pub struct TooFewSensors {
 pub fn estimate(
     recording: &Recording,
     levels: &Quantise,
-    numbers: &Numbers,
+    parameters: &Parameters,
     rng: &mut impl Rng,
     tick: &dyn Fn(),
 ) -> Result<Estimate, TooFewSensors> {
@@ -208,12 +209,12 @@ pub fn estimate(
     let Recording { tactile, signed, .. } = recording;
     let (sensors, distances) = distances(tactile, *signed, levels);
     tick();
-    let parts = rigid_parts(tactile, *signed, &sensors, numbers);
+    let parts = rigid_parts(tactile, *signed, &sensors, parameters);
     let novelty = novelty::novelty(tactile, *signed, &sensors);
     let comes_back = novelty < SIMILAR && novelty::has_few_motions(tactile, *signed, &sensors);
     let fit = Fit::new(&parts, recording, novelty, comes_back);
     tick();
-    let (parts, joints) = refine(tactile, *signed, parts, numbers, rng);
+    let (parts, joints) = refine(tactile, *signed, parts, parameters, rng);
     tick();
     Ok(Estimate { fit, parts, joints, mapped: sensors, distances })
 }
@@ -226,6 +227,9 @@ const STROKES: &str = "few sensors feel something at a time, as where something 
 
 /// What is the matter if all joints keep step in one rhythm.
 const REPETITION: &str = "the movement repeats itself, so that parts that keep step cannot be told apart";
+
+/// What is the matter if a movement of many motions repeats itself.
+const LOOPED: &str = "the movement repeats itself, so that it tells no more than its first round";
 
 /// What is likely to be the matter if rigid parts explain a movement that comes back to similar states.
 const SIMILARITY: &str = "the movement comes back to similar states, as in a rhythm, and parts that keep step are hard to tell apart";

@@ -9,7 +9,7 @@ use bodyschema::numerics::partition::adjusted_rand_index;
 use bodyschema::numerics::rng::stream;
 use bodyschema::recording::Recording;
 use bodyschema::settings::{Base, Settings};
-use bodyschema::stages::numbers::Numbers;
+use bodyschema::stages::parameters::Parameters;
 use bodyschema::stages::sense::sense;
 use bodyschema::stages::simulate::simulate;
 use rand_distr::{Distribution, StandardNormal};
@@ -78,7 +78,7 @@ fn noise_costs_fewer_parts_if_it_counts_as_no_touch() {
     }
     let agreement = |recording: &Recording| {
         let found =
-            estimate(recording, quantise, &Numbers::default(), &mut stream(1, 1, "co-motion", 0), &|| ())
+            estimate(recording, quantise, &Parameters::default(), &mut stream(1, 1, "co-motion", 0), &|| ())
                 .unwrap();
         adjusted_rand_index(&found.parts.labels, &agent.labels())
     };

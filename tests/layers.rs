@@ -26,7 +26,7 @@ const ROOMS: [&str; 14] = [
 ];
 
 /// The stages in order: each imports only those before it, and `baselines` and `schema` never each other.
-const STAGES: [&str; 17] = [
+const STAGES: [&str; 18] = [
     "tree",
     "agent",
     "simulate",
@@ -36,6 +36,7 @@ const STAGES: [&str; 17] = [
     "noise",
     "quantise",
     "distance",
+    "parameters",
     "rigid_parts",
     "joints",
     "placement",

@@ -8,7 +8,7 @@ use bodyschema::numerics::rng::stream;
 use bodyschema::recording::Recording;
 use bodyschema::settings::{Base, Settings};
 use bodyschema::stages::evaluate::score;
-use bodyschema::stages::numbers::Numbers;
+use bodyschema::stages::parameters::Parameters;
 use bodyschema::stages::sense::Tactile;
 use bodyschema::stages::tree::Truth;
 
@@ -58,7 +58,7 @@ fn estimated(tactile: Tactile) -> Estimate {
     estimate(
         &Recording::new(tactile),
         &levels,
-        &Numbers::default(),
+        &Parameters::default(),
         &mut stream(1, 1, "co-motion", 0),
         &|| (),
     )

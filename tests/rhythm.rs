@@ -16,7 +16,7 @@ use rayon::prelude::*;
 
 use crate::support::folder::Folder;
 use crate::support::small::small_chain;
-use bodyschema::stages::numbers::Numbers;
+use bodyschema::stages::parameters::Parameters;
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -177,7 +177,7 @@ fn verdict(settings: &Settings) -> Fit {
     estimate(
         &Recording::new(tactile),
         &levels,
-        &Numbers::default(),
+        &Parameters::default(),
         &mut stream(1, 1, "co-motion", 0),
         &|| (),
     )

@@ -69,10 +69,10 @@ def number_of(value: Any, name: str) -> float:
 
 
 def changed_of(changed: Changed) -> dict[str, float]:
-    """Numbers of the search that are not the default, by their names."""
+    """Parameters that are not the default, by their names."""
     if not isinstance(changed, (Mapping, type(None))):
-        raise ValueError(f"numbers must be a mapping of names to values, but is {changed!r}")
-    return {str(name): number_of(value, f"numbers[{name!r}]") for name, value in (changed or {}).items()}
+        raise ValueError(f"parameters must be a mapping of names to values, but is {changed!r}")
+    return {str(name): number_of(value, f"parameters[{name!r}]") for name, value in (changed or {}).items()}
 
 
 def path_of(value: Any, name: str) -> str:

@@ -21,7 +21,7 @@ def tree(
     labels: list[int],
     rank: int | None,
     said: _Said,
-    asked: _Asked,
+    seed: int,
     jobs: int,
 ) -> dict[str, Any]: ...
 def place(

@@ -23,14 +23,14 @@ class Fit:
     ----------
     verdict : {"good", "doubtful", "does not fit"}
         Whether they do. If it is "does not fit", parts and tree mean nothing: too few sensors are explained, few sensors feel something
-        at a time, the movement repeats itself, or sensors do not read 0 at rest.
+        at a time, the movement repeats itself in one rhythm, or sensors do not read 0 at rest.
     explained : float
         The share of sensors that the motion of a part explains, 0 to 1. From 0.9 on the verdict is good, from 0.8 on doubtful. Below
         1,000 samples it is doubtful at best.
     novelty : float
         The share of what is felt at a sample that the most similar other state leaves, 0 to 1, the median over samples. Below 0.001 the
         movement repeats itself; if it also consists of few motions, as one rhythm does, the verdict is "does not fit".
-        With as few motions, it is doubtful at best below 0.1.
+        With as few motions, it is doubtful at best below 0.1; a movement that repeats itself always is.
     cause : str or None
         What is likely to be the matter, unless the verdict is good.
     """
@@ -76,6 +76,8 @@ class Estimate(Joints):
         Time between two samples, s.
     seed : int
         Seed of the bootstrap.
+    parameters : dict of str to float
+        Parameters of the method that were changed.
     repeats : int
         How many times parts and tree were estimated again, from resampled times; 0 where there is no tree.
     repeated : ndarray of shape (M,), float64, or None
@@ -105,6 +107,7 @@ class Estimate(Joints):
     keep_saturated: bool
     interval: Optional[float]
     seed: int
+    parameters: dict[str, float]
     repeats: int
     repeated: Optional[np.ndarray]
     repeated_parts: Optional[np.ndarray]
@@ -181,7 +184,7 @@ def estimate(
     keep_saturated: bool = False,
     force: bool = False,
     repeats: int = 0,
-    numbers: Changed = None,
+    parameters: Changed = None,
     random_state: RandomState = None,
     n_jobs: Optional[int] = -1,
     progress: Progress = None,
@@ -209,9 +212,8 @@ def estimate(
     repeats : int, default 0
         Estimate again so many times, at most 1,000, from resampled blocks of time, and count how often sensors, parts and joints are
         found again. Each repeat takes about as long as the estimate. Support takes the parts as given; this does not.
-    numbers : mapping of str to float, optional
-        Numbers that decide which parts and joints are found, where they are not to be the default, such as ``{"min_saving": 0.6}``.
-        docs/shown/numbers lists all of them, and how much they matter.
+    parameters : mapping of str to float, optional
+        Parameters of the method that are not to be the default, such as ``{"min_saving": 0.6}``. docs/shown/parameters lists all of them.
     random_state : int, NumPy generator or None
         Seed of the bootstrap, from 0 to 2**64 − 1. None is `bodyschema.SEED`, as on the command line.
     n_jobs : int or None, default -1
@@ -257,7 +259,7 @@ def estimate(
     if interval is not None and number_of(interval, "interval") <= 0:
         raise ValueError(f"interval must be a time above 0, in s, but is {interval!r}")
     said = said_of(signed, keep_saturated)
-    seed, jobs, changed = seed_of(random_state), jobs_of(n_jobs), changed_of(numbers)
+    seed, jobs, changed = seed_of(random_state), jobs_of(n_jobs), changed_of(parameters)
     array, read_interval = touch_of(touch)
     interval = read_interval if interval is None else interval
     count = count_of(repeats, "repeats", 0)
@@ -293,6 +295,7 @@ def estimate(
         keep_saturated=said[1],
         interval=None if interval is None else float(interval),
         seed=seed,
+        parameters=changed,
         repeats=count,
         repeated=of_all(facts["repeated"], np.nan) if count > 0 else None,
         repeated_parts=facts["repeated_parts"] if count > 0 else None,

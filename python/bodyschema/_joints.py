@@ -9,7 +9,7 @@ from typing import Any, Optional
 import numpy as np
 
 from . import _bodyschema, _picture
-from ._arguments import Changed, RandomState, changed_of, count_of, jobs_of, labels_of, seed_of
+from ._arguments import RandomState, count_of, jobs_of, labels_of, seed_of
 from ._reading import said_of, touch_of, warn_of_cleaning
 
 
@@ -95,7 +95,6 @@ def estimate_tree(
     rank: Optional[int] = None,
     signed: Optional[bool] = None,
     keep_saturated: bool = False,
-    numbers: Changed = None,
     random_state: RandomState = None,
     n_jobs: Optional[int] = -1,
 ) -> Joints:
@@ -109,7 +108,7 @@ def estimate_tree(
         The part of each sensor, any whole number; −1 leaves a sensor out.
     rank : int, optional
         Rank of the motion subspace of each part, 1 to 6. By default the data choose one for each.
-    signed, keep_saturated, numbers, random_state, n_jobs
+    signed, keep_saturated, random_state, n_jobs
         As for `estimate`.
 
     Returns
@@ -126,11 +125,11 @@ def estimate_tree(
     -----
     It is `bodyschema tree` of the command line; docs/estimate.md has the theory.
     """
-    asked, jobs = (seed_of(random_state), changed_of(numbers)), jobs_of(n_jobs)
+    seed, jobs = seed_of(random_state), jobs_of(n_jobs)
     array, _ = touch_of(touch)
     labels = labels_of(parts, "parts", -1)
     given = None if rank is None else count_of(rank, "rank")
-    facts = _bodyschema.tree(array, labels.tolist(), given, said_of(signed, keep_saturated), asked, jobs)
+    facts = _bodyschema.tree(array, labels.tolist(), given, said_of(signed, keep_saturated), seed, jobs)
     warn_of_cleaning(facts, array.shape[1])
     return Joints(**joints_of(facts, True))
 

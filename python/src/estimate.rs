@@ -12,7 +12,7 @@ use bodyschema::numerics::rng::stream;
 use bodyschema::recording::{Cleaning, Recording};
 use bodyschema::settings::{Base, Settings};
 use bodyschema::stages::joints::{Joints, Pair, joints};
-use bodyschema::stages::numbers::Numbers;
+use bodyschema::stages::parameters::Parameters;
 use bodyschema::stages::sense::Tactile;
 use numpy::{IntoPyArray, PyArray2};
 use pyo3::prelude::*;
@@ -100,14 +100,13 @@ pub(crate) fn read_touch(py: Python<'_>, path: PathBuf, reading: Reading, jobs: 
 /// Whether negative values count, if it is said, and whether saturated ones do.
 type Said = (Option<bool>, bool);
 
-/// The seed, and the numbers that the user has changed.
+/// The seed, and the parameters that the user has changed.
 type Asked = (u64, BTreeMap<String, f64>);
 
-/// All numbers, of which some were changed.
-fn numbers_of(changed: &BTreeMap<String, f64>) -> PyResult<Numbers> {
-    let mut numbers = Numbers::default();
-    changed.iter().try_for_each(|(name, value)| numbers.set(name, *value)).map_err(value_error)?;
-    Ok(numbers)
+/// All parameters, of which some were changed.
+fn parameters_of(changed: &BTreeMap<String, f64>) -> PyResult<Parameters> {
+    let changes = changed.iter().map(|(name, value)| (name.as_str(), *value));
+    Parameters::changed(changes).map_err(value_error)
 }
 
 /// Cleans a recording as the user says.
@@ -128,16 +127,16 @@ pub(crate) fn estimate<'py>(
     progress: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let ((seed, changed), (repeats, force)) = (asked, again);
-    let (threads, numbers) = (Threads::start(jobs)?, numbers_of(&changed)?);
+    let (threads, parameters) = (Threads::start(jobs)?, parameters_of(&changed)?);
     let tactile = arrays::touch(&threads, touch)?;
     let levels = Settings::load_over(Some(Base::ESTIMATE), None).map_err(value_error)?.quantise;
     let work = move |steps: &Steps| {
         let recording = cleaned(tactile, said);
         let rng = &mut stream(seed, 1, "co-motion", 0);
-        let found = estimate_of(&recording, &levels, &numbers, rng, &|| steps.tick())?;
+        let found = estimate_of(&recording, &levels, &parameters, rng, &|| steps.tick())?;
         let shows_tree = force || found.fit.fits();
         let again = (repeats > 0 && shows_tree)
-            .then(|| repeats_of(&recording, &found, repeats, &numbers, rng, &|| steps.tick()));
+            .then(|| repeats_of(&recording, &found, repeats, &parameters, rng, &|| steps.tick()));
         Ok((recording, found, again))
     };
     let outcome = threads.run(py, progress, work)?;
@@ -172,18 +171,17 @@ pub(crate) fn estimate<'py>(
 
 /// `bodyschema tree`: labels of −1 are of no part.
 #[pyfunction]
-#[pyo3(signature = (touch, labels, rank, said, asked, jobs))]
+#[pyo3(signature = (touch, labels, rank, said, seed, jobs))]
 pub(crate) fn tree<'py>(
     py: Python<'py>,
     touch: &Bound<'py, PyAny>,
     labels: Vec<i64>,
     rank: Option<usize>,
     said: Said,
-    asked: Asked,
+    seed: u64,
     jobs: usize,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let (seed, changed) = asked;
-    let (threads, numbers) = (Threads::start(jobs)?, numbers_of(&changed)?);
+    let threads = Threads::start(jobs)?;
     let tactile = arrays::touch(&threads, touch)?;
     if labels.len() != tactile.sensors() {
         return Err(value_error(format!(
@@ -201,7 +199,12 @@ pub(crate) fn tree<'py>(
         let own = recording.of_sensors(&known);
         let feels = own.iter().any(Option::is_some);
         let rng = &mut stream(seed, 1, "co-motion", 0);
-        (feels.then(|| joints(&recording.tactile, recording.signed, &own, rank, &numbers, rng)), recording)
+        (
+            feels.then(|| {
+                joints(&recording.tactile, recording.signed, &own, rank, &Parameters::default(), rng)
+            }),
+            recording,
+        )
     };
     let (found, recording) = threads.run(py, None, work)?;
     let found = found.ok_or_else(|| value_error("no sensor that has a part feels anything"))?;

@@ -81,7 +81,6 @@ def test_what_is_said_of_a_recording(folder, tmp_path, command, moved):
     for options, arguments in [
         ([], {}),
         (["--keep-saturated"], {"keep_saturated": True}),
-        (["--number", "samples=300", "--number", "monomial_ridge=0.01"], {"numbers": {"samples": 300, "monomial_ridge": 0.01}}),
         (["--signed", "yes"], {"signed": True}),
         (["--signed", "no", "--keep-saturated"], {"signed": False, "keep_saturated": True}),
     ]:
@@ -101,6 +100,21 @@ def test_what_is_said_of_a_recording(folder, tmp_path, command, moved):
             joints = bodyschema.estimate_tree(touch, moved.parts, **arguments)
         assert joints.pair_correlation.tobytes() == table(tmp_path / "joined/edges.csv")["correlation"].tobytes()
     assert warned == {False: True, True: False}
+
+
+def test_parameters_are_those_of_the_command_line(folder, tmp_path, command, moved, found):
+    options = ["--parameter", "samples=300", "--parameter", "monomial_ridge=0.0005"]
+    command("estimate", folder / "tactile.npy", *options, "--out", tmp_path / "found")
+    changed = bodyschema.estimate(moved.touch, parameters={"samples": 300, "monomial_ridge": 0.0005})
+    summary = json.loads((tmp_path / "found/summary.json").read_text())
+    assert changed.parameters == summary["parameters"] == {"samples": 300, "monomial_ridge": 0.0005}
+    rows = table(tmp_path / "found/parts.csv")
+    assert changed.residuals[rows["sensor"]].tobytes() == rows["residual"].tobytes()
+    assert changed.pair_correlation.tobytes() == table(tmp_path / "found/edges.csv")["correlation"].tobytes()
+    # Each of the two changes something.
+    assert changed.residuals.tobytes() != found.residuals.tobytes()
+    other = bodyschema.estimate(moved.touch, parameters={"samples": 300})
+    assert other.pair_correlation.tobytes() != changed.pair_correlation.tobytes()
 
 
 def test_a_file_is_read_as_the_command_line_reads_it(folder, tmp_path, moved, found):

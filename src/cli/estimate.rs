@@ -9,7 +9,7 @@ use clap::Args;
 use serde::Serialize;
 
 use super::estimate_report::Shown;
-use super::options::{NumberOptions, SettingsAndSeed, TruthFiles};
+use super::options::{ParameterOptions, SettingsAndSeed, TruthFiles};
 use super::output::say;
 use super::placement;
 use super::repeats;
@@ -40,7 +40,7 @@ pub(super) struct Estimate {
     #[command(flatten)]
     common: SettingsAndSeed,
     #[command(flatten)]
-    numbers: NumberOptions,
+    parameters: ParameterOptions,
     #[command(flatten)]
     truth: TruthFiles,
     /// Position and normal of each sensor: adds body.urdf, parts as boxes (docs/own-data.md)
@@ -99,7 +99,7 @@ struct Summary {
     parts: usize,
     seed: u64,
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
-    numbers: BTreeMap<String, f64>,
+    parameters: BTreeMap<String, f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     repeats: Option<usize>,
     revision: &'static str,
@@ -133,7 +133,7 @@ impl Estimate {
     /// Runs the subcommand.
     pub(super) fn run(self) -> Result<ExitCode> {
         let settings = self.common.load_over(Base::ESTIMATE)?;
-        let numbers = self.numbers.all()?;
+        let parameters = self.parameters.all()?;
         let (out, seed) = (&self.out, settings.experiment.seed);
         let all = self.file.read()?;
         let (name, interval, count) = (all.name.clone(), all.interval, all.tactile.sensors());
@@ -155,14 +155,14 @@ impl Estimate {
         warn_of_dropped(&name, count, &recording.dropped);
         let bar = progress(3 + self.repeats, "estimate".to_owned());
         let mut rng = stream(seed, 1, "co-motion", 0);
-        let found = estimate(&recording, &settings.quantise, &numbers, &mut rng, &|| bar.inc(1))?;
+        let found = estimate(&recording, &settings.quantise, &parameters, &mut rng, &|| bar.inc(1))?;
         let shows_tree = self.force || found.fit.fits();
         let count = if shows_tree { self.repeats as usize } else { 0 };
         let again = (count > 0)
-            .then(|| estimate::repeats(&recording, &found, count, &numbers, &mut rng, &|| bar.inc(1)));
+            .then(|| estimate::repeats(&recording, &found, count, &parameters, &mut rng, &|| bar.inc(1)));
         bar.finish_and_clear();
         let against = truth.as_ref().map(|truth| AgainstTruth::new(&found, &recording.truth(truth)));
-        let said = Said { interval, seed, numbers: self.numbers.changed(), truth: against };
+        let said = Said { interval, seed, parameters: self.parameters.changed(), truth: against };
         write(out, &found, again.as_ref(), &recording, said, shows_tree)?;
         let sites = sites.filter(|_| shows_tree).map(|sites| recording.of_sensors(&sites));
         let placed = placement::write(out, &recording, &found, sites.as_deref())?;
@@ -240,7 +240,7 @@ fn say_found(
 struct Said {
     interval: Option<f64>,
     seed: u64,
-    numbers: BTreeMap<String, f64>,
+    parameters: BTreeMap<String, f64>,
     truth: Option<AgainstTruth>,
 }
 
@@ -288,7 +288,7 @@ fn write(
         interval: said.interval,
         parts: found.joints.ranks.len(),
         seed: said.seed,
-        numbers: said.numbers,
+        parameters: said.parameters,
         repeats: again.map(|again| again.count),
         revision: env!("BODYSCHEMA_REVISION"),
         truth: said.truth,

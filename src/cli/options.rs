@@ -13,7 +13,7 @@ use crate::analysis::published::Experiment;
 use crate::files::tables::read_truth;
 use crate::settings::{Base, Settings, read_toml};
 use crate::stages::body_map::{MapMethod, MapOf};
-use crate::stages::numbers::Numbers;
+use crate::stages::parameters::Parameters;
 use crate::stages::quantise::Scheme;
 use crate::stages::schema::{EdgeWeight, Keep, Model, Sampler, Start};
 use crate::stages::tree::Truth;
@@ -85,22 +85,19 @@ impl SettingsAndSeed {
     }
 }
 
-/// Numbers of the search that are not the default.
+/// Parameters that are not the default.
 #[derive(Args)]
-pub(super) struct NumberOptions {
-    /// Change a number that decides, such as min_saving=0.6; docs/shown/numbers lists all of them. May be given several times
-    #[arg(long = "number", value_name = "NAME=VALUE", value_parser = name_and_value)]
+pub(super) struct ParameterOptions {
+    /// Change a parameter of the method, such as min_saving=0.6; may be repeated (docs/shown/parameters)
+    #[arg(long = "parameter", value_name = "NAME=VALUE", value_parser = name_and_value)]
     changed: Vec<(String, f64)>,
 }
 
-impl NumberOptions {
-    /// All numbers, of which the user may have changed some.
-    pub(super) fn all(&self) -> Result<Numbers> {
-        let mut numbers = Numbers::default();
-        for (name, value) in &self.changed {
-            numbers.set(name, *value)?;
-        }
-        Ok(numbers)
+impl ParameterOptions {
+    /// All parameters, of which the user may have changed some.
+    pub(super) fn all(&self) -> Result<Parameters> {
+        let changes = self.changed.iter().map(|(name, value)| (name.as_str(), *value));
+        Ok(Parameters::changed(changes)?)
     }
 
     /// Those that the user has changed, by their names.
@@ -109,7 +106,7 @@ impl NumberOptions {
     }
 }
 
-/// A number and its value.
+/// A parameter and its value.
 fn name_and_value(text: &str) -> Result<(String, f64), String> {
     let (name, value) = text.split_once('=').ok_or("it must be NAME=VALUE")?;
     let value = value.trim().parse().map_err(|_| format!("`{value}` is not a number"))?;

@@ -7,7 +7,7 @@ use anyhow::{Result, ensure};
 use clap::Args;
 use serde::Serialize;
 
-use super::options::{NumberOptions, TruthFiles, paper, with_default};
+use super::options::{TruthFiles, paper, with_default};
 use super::output::say;
 use super::touch::TouchFile;
 use crate::files::graph::{Link, Node, dot, graphml};
@@ -18,6 +18,7 @@ use crate::numerics::rng::stream;
 use crate::report::text_tree::text_tree;
 use crate::stages::evaluate::{Score, score};
 use crate::stages::joints::{Joints, Pair, joints};
+use crate::stages::parameters::Parameters;
 use crate::stages::rigid_parts::MAX_RANK;
 use crate::stages::tree::Truth;
 
@@ -35,8 +36,6 @@ pub(super) struct Tree {
     components: Option<u64>,
     #[arg(long, value_name = "S", help = with_default("Master seed of all random numbers", paper().experiment.seed))]
     seed: Option<u64>,
-    #[command(flatten)]
-    numbers: NumberOptions,
     #[command(flatten)]
     truth: TruthFiles,
     /// Folder to write to
@@ -64,7 +63,7 @@ struct EdgeRow {
 impl Tree {
     /// Runs the subcommand.
     pub(super) fn run(self) -> Result<ExitCode> {
-        let (out, numbers) = (&self.out, self.numbers.all()?);
+        let out = &self.out;
         let all = self.file.read()?;
         let (name, count) = (all.name.clone(), all.tactile.sensors());
         let parts = read_parts(&self.parts, count)?;
@@ -80,7 +79,8 @@ impl Tree {
         prepare_folder(out)?;
         let mut rng = stream(self.seed.unwrap_or(paper().experiment.seed), 1, "co-motion", 0);
         let rank = self.components.map(|k| k as usize);
-        let found = joints(&recording.tactile, recording.signed, &own, rank, &numbers, &mut rng);
+        let found =
+            joints(&recording.tactile, recording.signed, &own, rank, &Parameters::default(), &mut rng);
         write(out, &found, &labels)?;
         print(&found, &labels)?;
         if let Some(truth) = truth {

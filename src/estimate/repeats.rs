@@ -12,7 +12,7 @@ use super::{Estimate, searched};
 use crate::numerics::partition::sizes;
 use crate::recording::Recording;
 use crate::stages::joints::{blocks, refine_tree};
-use crate::stages::numbers::Numbers;
+use crate::stages::parameters::Parameters;
 use crate::stages::rigid_parts::{MIN_SENSORS, rigid_parts, stratified};
 use crate::stages::sense::Tactile;
 use crate::stages::tree::Edge;
@@ -44,7 +44,7 @@ pub fn repeats(
     recording: &Recording,
     found: &Estimate,
     count: usize,
-    numbers: &Numbers,
+    parameters: &Parameters,
     rng: &mut impl Rng,
     tick: &dyn Fn(),
 ) -> Repeats {
@@ -54,7 +54,8 @@ pub fn repeats(
     let mut parts: BTreeMap<usize, usize> = labels.iter().map(|label| (*label, 0)).collect();
     let mut edges = vec![0; tree.len()];
     for _ in 0..count {
-        let (other, other_tree) = found_again(resampled(&recording.tactile, rng), recording.signed, numbers);
+        let (other, other_tree) =
+            found_again(resampled(&recording.tactile, rng), recording.signed, parameters);
         let same = Matching::new(labels, &other);
         for (at, times) in sensors.iter_mut().enumerate() {
             let is_on_it = other[at].is_some() && same.to.get(&labels[at]) == other[at].as_ref();
@@ -78,15 +79,15 @@ pub fn repeats(
 }
 
 /// The part of each sensor, or `None` if it tells nothing, and the tree. Too few sensors have no parts.
-fn found_again(tactile: Tactile, signed: bool, numbers: &Numbers) -> (Vec<Option<usize>>, Vec<Edge>) {
+fn found_again(tactile: Tactile, signed: bool, parameters: &Parameters) -> (Vec<Option<usize>>, Vec<Edge>) {
     let mut labels = vec![None; tactile.sensors()];
     // Saturated values of the recording are missing already.
     let usable = usable_with(tactile, true);
     if usable.sensors.len() < MIN_SENSORS {
         return (labels, Vec::new());
     }
-    let parts = rigid_parts(&usable.tactile, signed, &searched(&usable.tactile), numbers);
-    let (found, tree) = refine_tree(&usable.tactile, signed, parts, numbers);
+    let parts = rigid_parts(&usable.tactile, signed, &searched(&usable.tactile), parameters);
+    let (found, tree) = refine_tree(&usable.tactile, signed, parts, parameters);
     for (sensor, label) in usable.sensors.into_iter().zip(found) {
         labels[sensor] = Some(label);
     }

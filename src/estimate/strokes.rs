@@ -9,7 +9,8 @@ use crate::stages::sense::Tactile;
 /// Share of a sensor's mean pressure, beyond which it feels something.
 const FELT: f64 = 1e-3;
 /// Share of sensors that feel something at a time, on average, below which these are few. In 186 simulated and recorded movements of
-/// the calibration it was 0.43 and more; in strokes of two widths over four bodies 0.02 to 0.23.
+/// the calibration it was 0.43 and more; in strokes of two widths over nine bodies 0.02 to 0.33. With sensors of 8 bits, which read 0 at low
+/// speeds, it was 0.22 and more.
 const FEW: f64 = 0.2;
 
 /// Whether few sensors feel something at a time, at the samples at which any does. Meant for sensors without noise, and those of which noise

@@ -18,6 +18,7 @@
 //! | [`clock`] | a column → whether it holds times, and their interval |
 //! | [`usable`] | pressures → those of the sensors and samples that tell something |
 //! | [`noise`] | pressures → smoothed, with 0 where there is no touch |
+//! | [`parameters`] | what `rigid_parts` and `joints` are to be done with → [`Parameters`](parameters::Parameters) |
 //! | [`rigid_parts`] | pressures → [`RigidParts`](rigid_parts::RigidParts): the part of each sensor, by motion subspaces |
 //! | [`joints`] | pressures, parts → [`Joints`](joints::Joints): a tree over parts, by joint speeds and motions, and the support of its edges |
 //! | [`placement`] | pressures, parts, tree, places of sensors → [`Placement`](placement::Placement): where the joints are |
@@ -37,7 +38,7 @@ pub mod evaluate;
 pub mod joints;
 pub mod mixture;
 pub mod noise;
-pub mod numbers;
+pub mod parameters;
 pub mod placement;
 pub mod quantise;
 pub mod rigid_parts;

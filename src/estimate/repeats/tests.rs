@@ -24,9 +24,9 @@ fn parts_that_moved_only_once_are_not_found_again_each_time() {
     let recording = moved_once();
     let levels = Settings::load_over(Some(Base::ESTIMATE), None).unwrap().quantise;
     let rng = &mut stream(1, 1, "moved once", 1);
-    let found = estimate(&recording, &levels, &Numbers::default(), rng, &|| ()).unwrap();
+    let found = estimate(&recording, &levels, &Parameters::default(), rng, &|| ()).unwrap();
     assert_eq!(found.joints.ranks.len(), 3);
-    let again = repeats(&recording, &found, 8, &Numbers::default(), rng, &|| ());
+    let again = repeats(&recording, &found, 8, &Parameters::default(), rng, &|| ());
     // The block in which they moved apart is drawn in two of three repeats.
     assert_eq!(again.parts[&0], 1.0);
     assert!((1..3).any(|part| (0.2..0.95).contains(&again.parts[&part])), "{again:?}");
@@ -51,7 +51,7 @@ fn parts_have_counterparts_by_their_sensors_whatever_they_are_called() {
 #[test]
 fn times_at_which_nothing_is_felt_have_no_parts() {
     let silent = Tactile { samples: 200, pressures: vec![0.0; 20 * 200] };
-    assert_eq!(found_again(silent, false, &Numbers::default()), (vec![None; 20], vec![]));
+    assert_eq!(found_again(silent, false, &Parameters::default()), (vec![None; 20], vec![]));
 }
 
 #[test]

@@ -27,7 +27,7 @@ fn joined(distances: &DMatrix<f64>) -> Vec<Edge> {
     let parts = distances.nrows();
     let mut edges = with_latent_nodes(distances);
     edges.sort_by(|a, b| a.2.total_cmp(&b.2));
-    // The part that a node is one with, if any, by the first node of its component.
+    // A node for each component, and the part that the component has, if any, by this node.
     let mut component: Vec<usize> = (0..2 * parts).collect();
     let mut part: Vec<Option<usize>> = (0..2 * parts).map(|node| (node < parts).then_some(node)).collect();
     let mut kept = Vec::new();

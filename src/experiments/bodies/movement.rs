@@ -12,7 +12,7 @@ use crate::settings::Settings;
 use crate::stages::distance::information_metric;
 use crate::stages::evaluate::{joins, parts, parts_match, score};
 use crate::stages::joints::joint_tree;
-use crate::stages::numbers::Numbers;
+use crate::stages::parameters::Parameters;
 use crate::stages::quantise::quantise;
 use crate::stages::sense::{Tactile, sense};
 use crate::stages::simulate::simulate;
@@ -184,7 +184,7 @@ impl Movement<'_> {
         let recording = Cleaned::new(tactile);
         let mut rng = stream(experiment.seed, seen.simulation, "co-motion", 0);
         // A short recording may be of a body whose joints are all locked.
-        let Ok(estimated) = estimate(&recording, levels, &Numbers::default(), &mut rng, &|| ()) else {
+        let Ok(estimated) = estimate(&recording, levels, &Parameters::default(), &mut rng, &|| ()) else {
             return (nothing, Vec::new());
         };
         let truth = recording.truth(seen.truth);

@@ -12,11 +12,11 @@ use rayon::prelude::*;
 use super::cross_moments::{CrossMoments, Extended};
 use super::information::of_speeds;
 use super::tree::maximum_spanning_tree;
-use crate::stages::numbers::Numbers;
+use crate::stages::parameters::Parameters;
 use crate::stages::rigid_parts::MotionSubspace;
 
-/// Information, in nats, that the tree must gain by moving a cluster from one part to another, as a share of what an assignment must gain: one in so many.
-const MOVE: f64 = 5.0;
+/// How many times more the tree must gain by an assignment than by a later move to another part.
+const ASSIGNMENT_TO_MOVE: f64 = 5.0;
 /// Most times that moves of all clusters are tried.
 const MAX_SWEEPS: usize = 3;
 
@@ -30,13 +30,13 @@ pub(super) fn assign(
     unassigned: &[MotionSubspace],
     pairs: &[(usize, usize)],
     samples: usize,
-    numbers: &Numbers,
+    parameters: &Parameters,
 ) -> (Vec<Option<usize>>, f64) {
     let mut assigned = vec![None; unassigned.len()];
     if parts.len() < 2 || unassigned.is_empty() {
         return (assigned, 0.0);
     }
-    let moments = CrossMoments::new(parts, unassigned, samples, numbers);
+    let moments = CrossMoments::new(parts, unassigned, samples, parameters);
     let mut tree = Assignment::new(&moments);
     let ends =
         (0..unassigned.len()).map(|cluster| vec![cluster]).chain(pairs.iter().map(|&(a, b)| vec![a, b]));
@@ -47,7 +47,7 @@ pub(super) fn assign(
     loop {
         let found: Vec<f64> = trials.par_iter().map(|trial| tree.information_with(trial)).collect();
         let Some((at, information)) = largest(found.into_iter()) else { break };
-        if information <= tree.information + numbers.min_gain {
+        if information <= tree.information + parameters.min_assignment_gain {
             break;
         }
         let best = trials.swap_remove(at);
@@ -78,10 +78,10 @@ pub(super) fn assign(
 }
 
 /// Information, in nats, that the tree over the other parts gains if one is merged with the part that gains most by it.
-pub(super) fn gain(parts: &[MotionSubspace], at: usize, samples: usize, numbers: &Numbers) -> f64 {
+pub(super) fn gain(parts: &[MotionSubspace], at: usize, samples: usize, parameters: &Parameters) -> f64 {
     let others: Vec<MotionSubspace> =
         parts.iter().enumerate().filter(|(place, _)| *place != at).map(|(_, own)| own.clone()).collect();
-    let moments = CrossMoments::new(&others, &parts[at..=at], samples, numbers);
+    let moments = CrossMoments::new(&others, &parts[at..=at], samples, parameters);
     let tree = Assignment::new(&moments);
     let with = |part: usize| tree.information_with(&tree.trial(vec![0], part)) - tree.information;
     (0..others.len()).into_par_iter().map(with).reduce(|| f64::NEG_INFINITY, f64::max)
@@ -90,12 +90,6 @@ pub(super) fn gain(parts: &[MotionSubspace], at: usize, samples: usize, numbers:
 /// The first of the largest numbers, and its place.
 fn largest(values: impl Iterator<Item = f64>) -> Option<(usize, f64)> {
     values.enumerate().reduce(|best, other| if other.1 > best.1 { other } else { best })
-}
-
-/// What the edges of the maximum spanning tree say of joint speeds, in nats.
-fn information(correlations: &DMatrix<f64>, negligible: f64) -> f64 {
-    let edges = maximum_spanning_tree(correlations);
-    edges.iter().map(|edge| of_speeds(correlations[(edge.child, edge.parent)], negligible)).sum()
 }
 
 /// Clusters that are tried on a part.
@@ -126,12 +120,9 @@ impl<'a> Assignment<'a> {
             correlations[(a, b)] = moments.correlation(&parts[a], &parts[b]);
             correlations[(b, a)] = correlations[(a, b)];
         }
-        Self {
-            moments,
-            parts,
-            information: information(&correlations, moments.numbers.negligible),
-            correlations,
-        }
+        let mut own = Self { moments, parts, correlations, information: 0.0 };
+        own.information = own.information_of(&own.correlations);
+        own
     }
 
     fn trial(&self, clusters: Vec<usize>, part: usize) -> Trial {
@@ -154,9 +145,11 @@ impl<'a> Assignment<'a> {
         (0..self.parts.len()).map(with).collect()
     }
 
-    /// The information of the tree over parts with these correlations.
+    /// What the edges of the maximum spanning tree over parts with these correlations say of joint speeds, in nats.
     fn information_of(&self, correlations: &DMatrix<f64>) -> f64 {
-        information(correlations, self.moments.numbers.negligible)
+        let least = self.moments.parameters.min_unexplained;
+        let edges = maximum_spanning_tree(correlations);
+        edges.iter().map(|edge| of_speeds(correlations[(edge.child, edge.parent)], least)).sum()
     }
 
     /// The information of the tree with a trial.
@@ -183,7 +176,7 @@ impl<'a> Assignment<'a> {
         };
         let others: Vec<usize> = (0..self.parts.len()).filter(|part| *part != from).collect();
         let mut found: Vec<(usize, Extended, DMatrix<f64>)> = others.into_par_iter().map(moved).collect();
-        let least = self.moments.numbers.min_gain / MOVE;
+        let least = self.moments.parameters.min_assignment_gain / ASSIGNMENT_TO_MOVE;
         let best = largest(found.iter().map(|(.., correlations)| self.information_of(correlations)));
         let Some((at, information)) = best.filter(|(_, sum)| *sum > self.information + least) else {
             return from;

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use super::correlation::{QuadraticForms, common};
 use super::moments::{monomials, scales};
-use crate::stages::numbers::Numbers;
+use crate::stages::parameters::Parameters;
 use crate::stages::rigid_parts::{MotionSubspace, stratified};
 
 /// Samples that are used, spread over all.
@@ -39,8 +39,8 @@ pub(super) struct CrossMoments {
     /// Ranks of the motions of parts, and of clusters.
     parts: Vec<usize>,
     clusters: Vec<usize>,
-    /// The numbers that decide.
-    pub numbers: Numbers,
+    /// The parameters of the search.
+    pub parameters: Parameters,
 }
 
 impl CrossMoments {
@@ -49,7 +49,7 @@ impl CrossMoments {
         parts: &[MotionSubspace],
         unassigned: &[MotionSubspace],
         samples: usize,
-        numbers: &Numbers,
+        parameters: &Parameters,
     ) -> Self {
         let chosen: Vec<usize> = stratified(samples, MAX_SAMPLES).collect();
         let scales = scales(parts, samples);
@@ -78,7 +78,16 @@ impl CrossMoments {
         let with_parts = products(&monomials, of_part.last().map_or(0, |last| last.end));
         let ranks = |motions: &[MotionSubspace]| motions.iter().map(|motion| motion.rank).collect();
         let (parts, clusters) = (ranks(parts), ranks(unassigned));
-        Self { monomials, with_parts, of_part, of_clusters, of_both, parts, clusters, numbers: *numbers }
+        Self {
+            monomials,
+            with_parts,
+            of_part,
+            of_clusters,
+            of_both,
+            parts,
+            clusters,
+            parameters: *parameters,
+        }
     }
 
     /// Number of parts.
@@ -89,7 +98,7 @@ impl CrossMoments {
     /// A part with these clusters.
     pub(super) fn extended(&self, part: usize, clusters: Vec<usize>) -> Extended {
         let (places, pairs) = self.places(part, &clusters);
-        let forms = QuadraticForms::new(pairs, self.select(&places, &places), self.numbers.monomial_ridge);
+        let forms = QuadraticForms::new(pairs, self.select(&places, &places), self.parameters.monomial_ridge);
         Extended { clusters, places, forms }
     }
 

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use super::correlation::{QuadraticForms, common};
 use super::information::{Gaussian, mutual_information, of_joint};
 use crate::numerics::interrupt;
-use crate::stages::numbers::Numbers;
+use crate::stages::parameters::Parameters;
 use crate::stages::rigid_parts::MotionSubspace;
 
 /// Weight of a sample at which the whole body hardly moves, in units of its mean square.
@@ -22,8 +22,8 @@ pub(super) struct Moments {
     monomials: Products,
     /// Number of samples.
     samples: usize,
-    /// The numbers that decide.
-    numbers: Numbers,
+    /// The parameters of the search.
+    parameters: Parameters,
 }
 
 /// How much each part has to do with each other one: parts × parts, symmetric.
@@ -39,7 +39,12 @@ impl Moments {
     ///
     /// The components of a sample are divided by the fourth root of the whole body's Σ |w|² there. So monomials are divided by its
     /// root, and fast movements count in proportion to speed, not to its square.
-    pub(super) fn new(motions: &[MotionSubspace], samples: usize, blocks: usize, numbers: &Numbers) -> Self {
+    pub(super) fn new(
+        motions: &[MotionSubspace],
+        samples: usize,
+        blocks: usize,
+        parameters: &Parameters,
+    ) -> Self {
         let ranks: Vec<usize> = motions.iter().map(|motion| motion.rank).collect();
         let scales = scales(motions, samples);
         let blocks = if scales.iter().any(|scale| *scale > 0.0) { blocks } else { 0 };
@@ -59,7 +64,7 @@ impl Moments {
                 components(t).map(scaled(scales[t].sqrt()))
             }),
             samples,
-            numbers: *numbers,
+            parameters: *parameters,
         }
     }
 
@@ -81,8 +86,8 @@ impl Moments {
         let own = |part: usize| {
             let pairs = monomials(self.components.length(part));
             let forms = self.monomials.of(&quadratic, part, part);
-            let forms = QuadraticForms::new(pairs, forms, self.numbers.monomial_ridge);
-            (forms, Gaussian::new(self.components.of(&linear, part, part), self.numbers.component_ridge))
+            let forms = QuadraticForms::new(pairs, forms, self.parameters.monomial_ridge);
+            (forms, Gaussian::new(self.components.of(&linear, part, part), self.parameters.component_ridge))
         };
         let own: Vec<_> = (0..parts).map(own).collect();
         let (mut correlations, mut information) =
@@ -92,7 +97,7 @@ impl Moments {
             let shared = mutual_information(&own[a].1, &own[b].1, &self.components.of(&linear, a, b));
             for at in [(a, b), (b, a)] {
                 correlations[at] = found.correlation;
-                information[at] = of_joint(&found, shared, self.samples, &self.numbers);
+                information[at] = of_joint(&found, shared, self.samples, &self.parameters);
             }
         }
         Dependence { correlations, information }

@@ -12,7 +12,7 @@ use rayon::prelude::*;
 use super::assign::{assign, gain};
 use super::tree::{Joints, tree_of_motions};
 use crate::numerics::partition::{named_by_appearance, sizes};
-use crate::stages::numbers::Numbers;
+use crate::stages::parameters::Parameters;
 use crate::stages::rigid_parts::{
     MotionSubspace, RigidParts, Roots, opposite_pairs, similar, stratified, typical_size,
 };
@@ -33,16 +33,16 @@ type Members = BTreeMap<usize, Vec<usize>>;
 ///
 /// A cluster is assigned to the part that the joints tell; if none does, each of its sensors to the part with the smallest
 /// residual. In: M × T pressures, of any sign, whether negative ones are signal (`signed`), the parts and unassigned clusters of
-/// their sensors, and the `numbers` that decide. Out: parts without unassigned clusters, named by appearance, and their tree.
+/// their sensors, and the `parameters`. Out: parts without unassigned clusters, named by appearance, and their tree.
 pub(crate) fn refine(
     tactile: &Tactile,
     signed: bool,
     parts: RigidParts,
-    numbers: &Numbers,
+    parameters: &Parameters,
     rng: &mut impl Rng,
 ) -> (RigidParts, Joints) {
-    let (refined, names, motions) = refined(tactile, signed, parts, numbers);
-    let joints = Joints::of_motions(&names, &motions, tactile.samples, numbers, rng);
+    let (refined, names, motions) = refined(tactile, signed, parts, parameters);
+    let joints = Joints::of_motions(&names, &motions, tactile.samples, parameters, rng);
     (refined, joints)
 }
 
@@ -51,10 +51,10 @@ pub(crate) fn refine_tree(
     tactile: &Tactile,
     signed: bool,
     parts: RigidParts,
-    numbers: &Numbers,
+    parameters: &Parameters,
 ) -> (Vec<usize>, Vec<Edge>) {
-    let (refined, names, motions) = refined(tactile, signed, parts, numbers);
-    (refined.labels, tree_of_motions(&names, &motions, tactile.samples, numbers))
+    let (refined, names, motions) = refined(tactile, signed, parts, parameters);
+    (refined.labels, tree_of_motions(&names, &motions, tactile.samples, parameters))
 }
 
 /// The parts with each unassigned cluster assigned, and the label of each, rising, with its motion.
@@ -62,9 +62,9 @@ fn refined(
     tactile: &Tactile,
     signed: bool,
     mut parts: RigidParts,
-    numbers: &Numbers,
+    parameters: &Parameters,
 ) -> (RigidParts, Vec<usize>, Vec<MotionSubspace>) {
-    let mut refinement = Refinement::new(tactile, signed, numbers);
+    let mut refinement = Refinement::new(tactile, signed, parameters);
     let mut assigned = refinement.assigned(&parts);
     while let Some(spurious) = refinement.spurious(&parts, &assigned) {
         (parts, assigned) = refinement.dissolved(&parts, spurious);
@@ -129,12 +129,12 @@ struct Refinement<'a> {
     roots: Roots,
     /// Motions by their sensors: most stay the same from one iteration to the next.
     known: BTreeMap<Vec<usize>, MotionSubspace>,
-    /// The numbers that decide.
-    numbers: Numbers,
+    /// The parameters of the search.
+    parameters: Parameters,
 }
 
 impl<'a> Refinement<'a> {
-    fn new(tactile: &'a Tactile, signed: bool, numbers: &Numbers) -> Self {
+    fn new(tactile: &'a Tactile, signed: bool, parameters: &Parameters) -> Self {
         let series: Vec<&[f32]> = tactile.series().collect();
         let samples: Vec<usize> = stratified(tactile.samples, MAX_SAMPLES).collect();
         Self {
@@ -142,7 +142,7 @@ impl<'a> Refinement<'a> {
             signed,
             series,
             known: BTreeMap::new(),
-            numbers: *numbers,
+            parameters: *parameters,
         }
     }
 
@@ -177,7 +177,7 @@ impl<'a> Refinement<'a> {
         let of_clusters = self.motions(&parts, &clusters);
         let members: Vec<&[usize]> = clusters.values().map(Vec::as_slice).collect();
         let pairs = opposite_pairs(&self.roots, &members);
-        let (found, information) = assign(&motions, &of_clusters, &pairs, self.samples(), &self.numbers);
+        let (found, information) = assign(&motions, &of_clusters, &pairs, self.samples(), &self.parameters);
         if names.is_empty() {
             names.extend(clusters.keys());
             motions.extend(of_clusters);
@@ -206,9 +206,9 @@ impl<'a> Refinement<'a> {
             own[*at] < small && motions[*at].rank < WHOLE_RANK && !parts.unassigned.contains(&names[*at])
         };
         let places = if names.len() > 2 { 0..names.len() } else { 0..0 };
-        let gains = places.filter(can_be).map(|at| (gain(motions, at, self.samples(), &self.numbers), at));
+        let gains = places.filter(can_be).map(|at| (gain(motions, at, self.samples(), &self.parameters), at));
         let most = gains.reduce(|most, other| if other.0 > most.0 { other } else { most });
-        most.filter(|(gain, _)| *gain > self.numbers.spurious).map(|(_, at)| names[at])
+        most.filter(|(gain, _)| *gain > self.parameters.min_merge_gain).map(|(_, at)| names[at])
     }
 
     /// The parts without one, and the same with its sensors assigned: as one cluster, whose motion they tell best together, or, if the tree
@@ -224,7 +224,7 @@ impl<'a> Refinement<'a> {
         let pieces = unassigned(parts, part, &pieces);
         let of_pieces = self.assigned(&pieces);
         let takers: BTreeSet<usize> = own.iter().map(|&sensor| of_pieces.parts.labels[sensor]).collect();
-        let least = self.numbers.spurious * (takers.len() as f64 - 1.0);
+        let least = self.parameters.min_merge_gain * (takers.len() as f64 - 1.0);
         if of_pieces.information > of_whole.information + least {
             (pieces, of_pieces)
         } else {

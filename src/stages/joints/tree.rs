@@ -8,7 +8,7 @@ use rand::{Rng, RngExt};
 use rayon::prelude::*;
 
 use super::moments::{Dependence, Moments};
-use crate::stages::numbers::Numbers;
+use crate::stages::parameters::Parameters;
 use crate::stages::rigid_parts::{MAX_RANK, MotionSubspace, motions_of_parts};
 use crate::stages::sense::Tactile;
 use crate::stages::tree::{Edge, prim};
@@ -64,10 +64,10 @@ impl Joints {
         labels: &[usize],
         motions: &[MotionSubspace],
         samples: usize,
-        numbers: &Numbers,
+        parameters: &Parameters,
         rng: &mut impl Rng,
     ) -> Self {
-        let moments = Moments::new(motions, samples, blocks(samples), numbers);
+        let moments = Moments::new(motions, samples, blocks(samples), parameters);
         let Dependence { correlations, information } = moments.dependence();
         let tree = maximum_spanning_tree(&information);
         let mut times_joined = DMatrix::<usize>::zeros(labels.len(), labels.len());
@@ -102,7 +102,7 @@ impl Joints {
 ///
 /// In: M × T pressures of any sign, NaN where one is missing; whether negative ones are signal (`signed`), not noise about 0; and for
 /// each of the M sensors the label of its part, any number, or `None` for a sensor to be left out. `rank`, 1 to 6, is the rank of the
-/// motion subspace of each part, at most one less than it has sensors; without it, the data choose one for each. `numbers` are those that decide. Out: the tree, and for each pair of parts their correlation and the bootstrap support of an edge between them. The same
+/// motion subspace of each part, at most one less than it has sensors; without it, the data choose one for each. Also the `parameters`. Out: the tree, and for each pair of parts their correlation and the bootstrap support of an edge between them. The same
 /// input and state of `rng` give the same bytes, whatever the number of threads.
 ///
 /// # Panics
@@ -112,18 +112,18 @@ pub fn joints(
     signed: bool,
     labels: &[Option<usize>],
     rank: Option<usize>,
-    numbers: &Numbers,
+    parameters: &Parameters,
     rng: &mut impl Rng,
 ) -> Joints {
-    let (parts, motions) = parts_and_motions(tactile, signed, labels, rank, numbers);
-    Joints::of_motions(&parts, &motions, tactile.samples, numbers, rng)
+    let (parts, motions) = parts_and_motions(tactile, signed, labels, rank, parameters);
+    Joints::of_motions(&parts, &motions, tactile.samples, parameters, rng)
 }
 
 /// The tree of [`joints`] without its support: of a short recording, the bootstrap takes most of the time.
 pub(crate) fn joint_tree(tactile: &Tactile, signed: bool, labels: &[Option<usize>]) -> Vec<Edge> {
-    let numbers = &Numbers::default();
-    let (parts, motions) = parts_and_motions(tactile, signed, labels, None, numbers);
-    tree_of_motions(&parts, &motions, tactile.samples, numbers)
+    let parameters = &Parameters::default();
+    let (parts, motions) = parts_and_motions(tactile, signed, labels, None, parameters);
+    tree_of_motions(&parts, &motions, tactile.samples, parameters)
 }
 
 /// The tree over parts with these labels, rising, from their motions at the same samples, without its support.
@@ -131,9 +131,9 @@ pub(super) fn tree_of_motions(
     labels: &[usize],
     motions: &[MotionSubspace],
     samples: usize,
-    numbers: &Numbers,
+    parameters: &Parameters,
 ) -> Vec<Edge> {
-    let moments = Moments::new(motions, samples, blocks(samples), numbers);
+    let moments = Moments::new(motions, samples, blocks(samples), parameters);
     labelled(&maximum_spanning_tree(&moments.dependence().information), labels)
 }
 
@@ -143,11 +143,11 @@ fn parts_and_motions(
     signed: bool,
     labels: &[Option<usize>],
     rank: Option<usize>,
-    numbers: &Numbers,
+    parameters: &Parameters,
 ) -> (Vec<usize>, Vec<MotionSubspace>) {
     assert_eq!(labels.len(), tactile.sensors(), "a part for each sensor");
     assert!(rank.is_none_or(|rank| (1..=MAX_RANK).contains(&rank)), "a rank from 1 to {MAX_RANK}");
-    motions_of_parts(tactile, signed, labels, rank, numbers).into_iter().unzip()
+    motions_of_parts(tactile, signed, labels, rank, parameters).into_iter().unzip()
 }
 
 /// Number of blocks that so many samples are cut into, to be drawn with replacement.

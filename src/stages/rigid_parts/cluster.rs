@@ -15,7 +15,7 @@ use super::log_determinant::log_determinant;
 use super::memory::{Memory, key};
 use super::roots::{Roots, columns, product};
 use super::stratified::stratified;
-use crate::stages::numbers::Numbers;
+use crate::stages::parameters::Parameters;
 
 /// Sensors of a cluster that its motion is learned from, spread over all.
 pub(super) const MAX_SENSORS: usize = 48;
@@ -47,8 +47,8 @@ pub(super) struct Felt {
     pub tolerance: f64,
     /// Iterations in which the motion of a cluster is learned, and more where it is in doubt whether one motion explains it.
     pub iterations: [usize; 2],
-    /// The numbers that decide.
-    pub numbers: Numbers,
+    /// The parameters of the search.
+    pub parameters: Parameters,
     /// Motions that were learned.
     pub memory: Memory<Learned>,
 }
@@ -56,18 +56,18 @@ pub(super) struct Felt {
 impl Felt {
     /// The largest residual variance that one motion explains.
     pub(super) fn explained(&self) -> f64 {
-        self.numbers.max_residual * self.tolerance
+        self.parameters.max_residual * self.tolerance
     }
 
     /// Weight of a completed root in the first iterations, and in more.
     pub(super) fn weights(&self) -> [f64; 2] {
-        [self.numbers.completed_weight, self.numbers.completed_weight_in_the_end]
+        [self.parameters.completed_weight, self.parameters.late_completed_weight]
     }
 
     /// What a root that is not felt tells of w, as a share of what one tells that is felt: all at the least tolerance of the search or
     /// below, since it is completed as exactly, and next to nothing with noise.
     fn told_by_censored(&self) -> f64 {
-        f64::min(1.0, self.numbers.min_tolerance / self.tolerance).powi(2)
+        f64::min(1.0, self.parameters.min_tolerance / self.tolerance).powi(2)
     }
 }
 
@@ -183,7 +183,7 @@ impl Cluster {
         if !self.is_learned || self.variance() > felt.tolerance {
             self.learn(felt, felt.iterations[1], felt.weights()[1]);
             // Beyond, it is of several parts.
-            let most = felt.numbers.max_open * felt.tolerance.max(felt.numbers.min_tolerance);
+            let most = felt.parameters.max_open_residual * felt.tolerance.max(felt.parameters.min_tolerance);
             if self.variance() > felt.tolerance && self.variance() <= most {
                 self.leave_minimum(felt);
             }
@@ -211,14 +211,14 @@ impl Cluster {
 
     /// How many components are more than residual.
     pub(super) fn present(&self, felt: &Felt, tolerance: f64) -> usize {
-        let least = felt.numbers.min_component * tolerance;
+        let least = felt.parameters.min_component * tolerance;
         self.components.iter().filter(|variance| **variance > least).count()
     }
 
     /// Whether two clusters have components in common: their union has fewer than both. What is below `min_tolerance` may be an error
     /// of the model, and is no component.
     pub(super) fn have_common(a: &Self, b: &Self, union: &Self, felt: &Felt) -> bool {
-        let tolerance = felt.tolerance.max(felt.numbers.min_tolerance);
+        let tolerance = felt.tolerance.max(felt.parameters.min_tolerance);
         let present = |own: &Self| own.present(felt, tolerance);
         present(union) < present(a) + present(b)
     }
@@ -336,7 +336,7 @@ impl Cluster {
             let mut next = loadings.clone();
             als.update_loadings(next.as_mut(), motion);
             let [residual, freedom] = plain.residual(next.as_ref(), motion);
-            if felt.tolerance < felt.numbers.min_tolerance && residual <= ROUNDING * freedom {
+            if felt.tolerance < felt.parameters.min_tolerance && residual <= ROUNDING * freedom {
                 *loadings = next;
                 is_whole = false;
                 break;

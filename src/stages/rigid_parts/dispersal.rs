@@ -125,7 +125,7 @@ impl Search {
         let cost =
             |(place, union): &(usize, Cluster)| union.description_length - self.length(others[*place].1);
         let saving = self.length(own) - unions.iter().map(cost).sum::<f64>();
-        let is_shorter = saving > self.felt.numbers.min_saving;
+        let is_shorter = saving > self.felt.parameters.min_saving;
         is_shorter.then(|| unions.into_iter().map(|(place, union)| (others[place].0, union)).collect())
     }
 }

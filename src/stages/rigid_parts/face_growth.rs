@@ -154,7 +154,7 @@ impl<'a> Faces<'a> {
         });
         let best = larger.reduce(|best, other| if other.0 > best.0 { other } else { best });
         let (saving, face, faces, description_length) =
-            best.filter(|(saving, ..)| *saving > self.search.felt.numbers.min_saving)?;
+            best.filter(|(saving, ..)| *saving > self.search.felt.parameters.min_saving)?;
         Some(Grown {
             from: part.from,
             faces,

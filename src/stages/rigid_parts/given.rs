@@ -12,7 +12,7 @@ use super::prepared::Prepared;
 use super::roots::size;
 use super::stratified::stratified;
 use super::subspace::MotionSubspace;
-use crate::stages::numbers::Numbers;
+use crate::stages::parameters::Parameters;
 use crate::stages::sense::Tactile;
 
 /// Sensors of a part that are used, spread over all: more than its motion is learned from.
@@ -22,13 +22,13 @@ const MAX_SENSORS: usize = 64;
 ///
 /// In: M × T pressures, of any sign, and NaN where one is missing; whether negative ones are signal (`signed`); for each of the M
 /// sensors the label of its part, or `None` for a sensor to be left out; and the rank of all motions, 1 to 6, or one less than a part has
-/// sensors. Without it, the data choose the rank of each. Also the `numbers` that decide.
+/// sensors. Without it, the data choose the rank of each. Also the `parameters`.
 pub(crate) fn motions_of_parts(
     tactile: &Tactile,
     signed: bool,
     labels: &[Option<usize>],
     rank: Option<usize>,
-    numbers: &Numbers,
+    parameters: &Parameters,
 ) -> BTreeMap<usize, MotionSubspace> {
     let series: Vec<&[f32]> = tactile.series().collect();
     let parts = members(&series, signed, labels);
@@ -37,7 +37,7 @@ pub(crate) fn motions_of_parts(
     if sensors.is_empty() {
         return parts.into_keys().map(|label| (label, nothing.clone())).collect();
     }
-    let prepared = Prepared::new(tactile, signed, &sensors, numbers);
+    let prepared = Prepared::new(tactile, signed, &sensors, parameters);
     let mut search = prepared.search(&sensors);
     let place: BTreeMap<usize, usize> = sensors.iter().copied().zip(0..).collect();
     let places = |own: &Vec<usize>| own.iter().map(|sensor| place[sensor]).collect::<Vec<usize>>();

@@ -70,7 +70,7 @@ impl Search {
         let residuals: Vec<Vec<f64>> = clusters.par_iter().map(|own| own.residuals(&self.felt)).collect();
         let mut wanted: Vec<Vec<(f64, usize)>> = vec![Vec::new(); clusters.len()];
         for sensor in self.in_none(clusters) {
-            if let Some(at) = best_part(&residuals, sensor, 0.0, self.felt.numbers.better) {
+            if let Some(at) = best_part(&residuals, sensor, 0.0, self.felt.parameters.max_residual_share) {
                 wanted[at].push((residuals[at][sensor], sensor));
             }
         }
@@ -130,7 +130,7 @@ impl Search {
 
     /// Whether it says something that a cluster explains so many more sensors. As many new components explain them whatever they feel.
     fn are_told(&self, more: usize, cluster: &Cluster, both: &Cluster) -> bool {
-        let present = |own: &Cluster| own.present(&self.felt, self.felt.numbers.coarse_tolerance);
+        let present = |own: &Cluster| own.present(&self.felt, self.felt.parameters.coarse_tolerance);
         more > present(both).saturating_sub(present(cluster))
     }
 }

@@ -45,7 +45,7 @@ fn halves(felt: &Felt, sensors: &[usize]) -> [Felt; 2] {
 mod tests {
     use super::super::memory::Memory;
     use super::*;
-    use crate::stages::numbers::Numbers;
+    use crate::stages::parameters::Parameters;
 
     #[test]
     fn samples_are_parted_by_speed() {
@@ -59,7 +59,7 @@ mod tests {
             sizes: vec![1.0, 3.0, 1.0, 1.0],
             tolerance: 1e-3,
             iterations: [1, 2],
-            numbers: Numbers::default(),
+            parameters: Parameters::default(),
             memory: Memory::default(),
         };
         let [slow, fast] = halves(&felt, &[1, 2]);

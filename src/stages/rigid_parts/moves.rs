@@ -98,7 +98,7 @@ impl Search {
         rest: &[usize],
         group: &[usize],
     ) -> Option<Place> {
-        let min_saving = self.felt.numbers.min_saving;
+        let min_saving = self.felt.parameters.min_saving;
         let (tried, has_near) = (tried_of(group), !near.is_empty());
         let both = || self.learned([tried_of(rest), tried.clone()].concat()).description_length;
         let alone = || self.learned(tried.clone()).description_length;

@@ -19,7 +19,7 @@ use super::search::MIN_SENSORS;
 use super::separation::best_part;
 use super::subspace::{MotionSubspace, ROTATION_RANK};
 use crate::numerics::partition::named_by_appearance;
-use crate::stages::numbers::Numbers;
+use crate::stages::parameters::Parameters;
 use crate::stages::sense::Tactile;
 
 /// Samples at which a sensor must feel something to be searched for: four for each of the six numbers of its c.
@@ -47,14 +47,19 @@ pub struct RigidParts {
 ///
 /// In: M × T pressures, of any sign and NaN where one is missing, of sensors that all change; whether negative ones are signal
 /// (`signed`), not noise about 0; and `sensors`, at least
-/// [`MIN_SENSORS`](super::MIN_SENSORS) of them, rising and spread over all; and the `numbers` that decide. The motions of parts are learned from these; the other
+/// [`MIN_SENSORS`](super::MIN_SENSORS) of them, rising and spread over all; and the `parameters`. The motions of parts are learned from these; the other
 /// sensors are assigned to the part with the smallest residual, or, if they feel something at few samples, the largest evidence. Out: the part of all M sensors. No random numbers are drawn, and
 /// the number of threads changes no bit.
 ///
 /// # Panics
 /// If `sensors` is empty or names a sensor beyond M, or T is 0.
-pub fn rigid_parts(tactile: &Tactile, signed: bool, sensors: &[usize], numbers: &Numbers) -> RigidParts {
-    let mut prepared = Prepared::new(tactile, signed, sensors, numbers);
+pub fn rigid_parts(
+    tactile: &Tactile,
+    signed: bool,
+    sensors: &[usize],
+    parameters: &Parameters,
+) -> RigidParts {
+    let mut prepared = Prepared::new(tactile, signed, sensors, parameters);
     let count = prepared.series.len();
     // Sensors that feel something at fewer samples tell next to nothing, and span motions of their own. They go to the part that makes them
     // likely, unless nearly all are such.
@@ -63,7 +68,7 @@ pub fn rigid_parts(tactile: &Tactile, signed: bool, sensors: &[usize], numbers: 
     let are_enough = telling.len() >= MIN_SENSORS;
     let sensors = if are_enough { &telling } else { sensors };
     let mut search = prepared.search(sensors);
-    let mut parts = parts_of(search.clusters(), numbers.min_freedom);
+    let mut parts = parts_of(search.clusters(), parameters.min_freedom);
     if parts.is_empty() {
         parts.push(search.whole());
     }
@@ -77,11 +82,13 @@ pub fn rigid_parts(tactile: &Tactile, signed: bool, sensors: &[usize], numbers: 
     }
     let residuals: Vec<Vec<f64>> = parts.par_iter().map(|part| part.shares(every)).collect();
     let scales: Vec<f64> = sensors.iter().map(|&sensor| prepared.scales[sensor]).collect();
-    let evidence: Vec<_> = parts.iter().map(|part| part.evidence(&scales, numbers.min_tolerance)).collect();
+    let evidence: Vec<_> =
+        parts.iter().map(|part| part.evidence(&scales, parameters.min_tolerance)).collect();
     let likeliest = |sensor: usize| likeliest_part(&evidence, every, sensor, prepared.scales[sensor]);
     labels.par_iter_mut().enumerate().filter(|(_, label)| label.is_none()).for_each(|(sensor, label)| {
         let likely = if are_enough && !tells[sensor] { likeliest(sensor) } else { None };
-        *label = likely.or_else(|| best_part(&residuals, sensor, search.most_residual(), numbers.better));
+        *label = likely
+            .or_else(|| best_part(&residuals, sensor, search.most_residual(), parameters.max_residual_share));
     });
     let rest: Vec<usize> = (0..count).filter(|&sensor| labels[sensor].is_none()).collect();
     let groups = similar(every, &rest);

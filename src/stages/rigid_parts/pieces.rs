@@ -35,7 +35,7 @@ pub(super) fn pieces(felt: &Felt, sensors: &[usize]) -> (Vec<Cluster>, Vec<usize
 /// The same without looking again among those that are left. The completion of a few sensors shows what that of all hides.
 fn pieces_once(outer: &Felt, sensors: &[usize]) -> (Vec<Vec<usize>>, Vec<usize>) {
     let roots = outer.roots.select_as_they_are(sensors);
-    let completion = Completion::new(&roots, outer.numbers.completion_ridge);
+    let completion = Completion::new(&roots, outer.parameters.completion_ridge);
     let felt = Felt {
         roots,
         completed: completion.velocities,
@@ -48,13 +48,13 @@ fn pieces_once(outer: &Felt, sensors: &[usize]) -> (Vec<Vec<usize>>, Vec<usize>)
     if whole.variance() <= limit {
         return (vec![sensors.to_vec()], Vec::new());
     }
-    let limit = f64::min(limit, whole.variance() / felt.numbers.sharper);
+    let limit = f64::min(limit, whole.variance() / felt.parameters.min_piece_gain);
     let mut best = Vec::new();
     for k in 2..=MAX_PIECES.min(2 * sensors.len() / MIN_SENSORS) {
         let mut found = k_subspaces(&felt, &completion.affinities, k);
         found.retain(|own| {
             own.variance() <= limit
-                && own.freedom >= felt.numbers.min_freedom
+                && own.freedom >= felt.parameters.min_freedom
                 && !is_two(&felt, &completion.affinities, own)
         });
         if count(&found) > count(&best) {
@@ -85,7 +85,7 @@ fn is_two(felt: &Felt, affinities: &Mat<f64>, cluster: &Cluster) -> bool {
     };
     let both = Cluster::new(felt, sensors.clone());
     half(0).description_length + half(1).description_length - both.description_length
-        <= felt.numbers.min_saving
+        <= felt.parameters.min_saving
 }
 
 /// Sensors in these clusters.

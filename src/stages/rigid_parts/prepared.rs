@@ -8,7 +8,7 @@ use super::memory::Memory;
 use super::roots::Roots;
 use super::search::Search;
 use super::subspace::{Loadings, MotionSubspace};
-use crate::stages::numbers::Numbers;
+use crate::stages::parameters::Parameters;
 use crate::stages::sense::Tactile;
 
 /// What M sensors felt, and which of it is searched.
@@ -27,17 +27,22 @@ pub(super) struct Prepared<'a> {
     pub sizes: Vec<f64>,
     /// At these samples, of all sensors; scaled by sensor and by sample.
     pub roots: Roots,
-    /// The numbers that decide.
-    numbers: Numbers,
+    /// The parameters of the search.
+    parameters: Parameters,
 }
 
 impl<'a> Prepared<'a> {
     /// Of M × T pressures, of which those of `sensors` are searched.
-    pub(super) fn new(tactile: &'a Tactile, signed: bool, sensors: &[usize], numbers: &Numbers) -> Self {
+    pub(super) fn new(
+        tactile: &'a Tactile,
+        signed: bool,
+        sensors: &[usize],
+        parameters: &Parameters,
+    ) -> Self {
         let series: Vec<&[f32]> = tactile.series().collect();
         let floors = floors(&series, signed);
         let searched: Vec<f64> = sensors.iter().map(|&sensor| floors[sensor]).collect();
-        let samples = telling_samples(&series_of(&series, sensors), signed, &searched, numbers.samples);
+        let samples = telling_samples(&series_of(&series, sensors), signed, &searched, parameters.samples);
         let roots = Roots::at(&series, &samples, signed);
         let scales = roots.scales();
         let floor = typical_floor(&floors, &scales);
@@ -51,21 +56,21 @@ impl<'a> Prepared<'a> {
             floor,
             scales,
             sizes,
-            numbers: *numbers,
+            parameters: *parameters,
         }
     }
 
     /// A search among these sensors.
     pub(super) fn search(&self, sensors: &[usize]) -> Search {
         let roots = self.roots.select_as_they_are(sensors);
-        let Completion { velocities, affinities } = Completion::new(&roots, self.numbers.completion_ridge);
+        let Completion { velocities, affinities } = Completion::new(&roots, self.parameters.completion_ridge);
         let felt = Felt {
             roots,
             completed: velocities,
             sizes: self.sizes.clone(),
             tolerance: 0.0,
             iterations: ITERATIONS,
-            numbers: self.numbers,
+            parameters: self.parameters,
             memory: Memory::default(),
         };
         Search::new(felt, affinities)

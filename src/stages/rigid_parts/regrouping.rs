@@ -56,7 +56,7 @@ impl Search {
         let length = self.length_of(clusters, &every);
         parts.iter().for_each(|part| part.complete_roots(&mut self.felt));
         let parts = self.assigned(parts, &every);
-        if length - self.length_of(&parts, &every) > self.felt.numbers.min_saving * clusters.len() as f64 {
+        if length - self.length_of(&parts, &every) > self.felt.parameters.min_saving * clusters.len() as f64 {
             return Some(parts);
         }
         self.felt.completed = before;

@@ -16,7 +16,7 @@ impl Search {
         let residuals: Vec<Vec<f64>> = clusters.par_iter().map(|own| own.residuals(&self.felt)).collect();
         let mut members: Vec<Vec<usize>> = clusters.iter().map(|own| own.sensors.clone()).collect();
         for sensor in self.in_none(&clusters) {
-            if let Some(best) = best_part(&residuals, sensor, 0.0, self.felt.numbers.better) {
+            if let Some(best) = best_part(&residuals, sensor, 0.0, self.felt.parameters.max_residual_share) {
                 members[best].push(sensor);
             }
         }

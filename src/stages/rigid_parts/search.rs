@@ -11,7 +11,7 @@ use super::cluster::{Cluster, Felt};
 use super::medians::median;
 use super::weights::weigh;
 use crate::numerics::linkage::largest_clusters;
-use crate::stages::numbers::Numbers;
+use crate::stages::parameters::Parameters;
 
 /// Sensors of a seed cluster: the fewest, and the most. Others wait until clusters have grown.
 pub(super) const SEED_SENSORS: [usize; 2] = [6, 16];
@@ -112,7 +112,7 @@ impl Search {
 
     /// The residual variance that is still explained, of a sensor that is in no cluster.
     pub(super) fn most_residual(&self) -> f64 {
-        self.felt.numbers.max_open * self.felt.tolerance
+        self.felt.parameters.max_open_residual * self.felt.tolerance
     }
 
     /// All sensors as one cluster.
@@ -148,7 +148,7 @@ impl Search {
 
     /// Sets the tolerance to the median residual variance of these clusters, within bounds.
     fn set_tolerance(&mut self, clusters: &[Vec<usize>]) {
-        let Numbers { min_tolerance, max_tolerance, .. } = self.felt.numbers;
+        let Parameters { min_tolerance, max_tolerance, .. } = self.felt.parameters;
         self.felt.tolerance = min_tolerance;
         let variance = |own: &Vec<usize>| Cluster::widest(&self.felt, own.clone()).variance();
         let variances = clusters.par_iter().map(variance).collect();
@@ -158,7 +158,7 @@ impl Search {
     /// The clusters of these sensors that one motion explains.
     fn unmixed(&self, seeds: &[Vec<usize>]) -> Vec<Cluster> {
         let found: Vec<Cluster> = seeds.par_iter().map(|own| Cluster::new(&self.felt, own.clone())).collect();
-        let most = self.felt.numbers.max_seed_residual * self.felt.tolerance;
+        let most = self.felt.parameters.max_seed_residual * self.felt.tolerance;
         found.into_iter().filter(|own| own.variance() <= most).collect()
     }
 
@@ -172,7 +172,7 @@ impl Search {
     /// Clusters of some sensors, of at most so many, by average linkage on their affinities.
     pub(super) fn linked(&self, sensors: &[usize], most: usize) -> Vec<Vec<usize>> {
         let distance = |i: usize, j: usize| 1.0 - self.affinities[(sensors[i], sensors[j])];
-        let farthest = 1.0 - self.felt.numbers.min_affinity;
+        let farthest = 1.0 - self.felt.parameters.min_affinity;
         let found = largest_clusters(sensors.len(), distance, Method::Average, most, farthest);
         found.into_iter().map(|own| own.into_iter().map(|at| sensors[at]).collect()).collect()
     }
@@ -180,7 +180,7 @@ impl Search {
     /// Merges the pair of clusters that saves most, again and again, as long as one motion explains the union, and both have
     /// components in common.
     pub(super) fn merged(&mut self, clusters: Vec<Cluster>) -> Vec<Cluster> {
-        let Numbers { min_saving, min_tolerance, .. } = self.felt.numbers;
+        let Parameters { min_saving, min_tolerance, .. } = self.felt.parameters;
         let mut name = clusters.len();
         let mut clusters: BTreeMap<usize, Cluster> = clusters.into_iter().enumerate().collect();
         // Those that are not one part are `None`.
@@ -237,7 +237,7 @@ impl Search {
     /// more iterations can tell, so every cluster stays.
     pub(super) fn may_be_one(&self, cluster: Cluster) -> Option<Cluster> {
         let is_near = cluster.variance() <= self.most_residual() || self.explains(&cluster);
-        (is_near || self.felt.tolerance < self.felt.numbers.min_tolerance).then_some(cluster)
+        (is_near || self.felt.tolerance < self.felt.parameters.min_tolerance).then_some(cluster)
     }
 
     /// Each cluster with those of highest affinity, on average.
@@ -271,7 +271,7 @@ impl Search {
         let mut order: Vec<(f64, usize)> =
             clusters.into_iter().map(|name| (affinity(of(name)), name)).collect();
         order.sort_by(|one, other| other.0.total_cmp(&one.0));
-        order.truncate(self.felt.numbers.neighbours);
+        order.truncate(self.felt.parameters.neighbours);
         order.into_iter().map(|(_, name)| name).collect()
     }
 

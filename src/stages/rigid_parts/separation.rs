@@ -16,7 +16,7 @@ use super::halves::slow_share;
 use super::pieces::pieces;
 use super::search::{MIN_CLUSTER, MIN_SENSORS, Search};
 use super::weights::calm_share;
-use crate::stages::numbers::Numbers;
+use crate::stages::parameters::Parameters;
 
 /// Iterations in which a motion is learned, and in which it comes to its end: for the coarse idea of what is exact, and for the fine one.
 const ITERATIONS: [[usize; 2]; 2] = [[24, 100], [24, 300]];
@@ -28,7 +28,7 @@ impl Search {
     pub(super) fn separated(&mut self, clusters: &[Cluster]) -> Option<Vec<Cluster>> {
         let before = (self.felt.tolerance, self.felt.iterations);
         let (mut last, mut found) = (before, None::<Vec<Cluster>>);
-        let Numbers { coarse_tolerance, fine_tolerance, .. } = self.felt.numbers;
+        let Parameters { coarse_tolerance, fine_tolerance, .. } = self.felt.parameters;
         let levels = [(coarse_tolerance, ITERATIONS[0]), (fine_tolerance, ITERATIONS[1])];
         for (at, level) in levels.into_iter().enumerate() {
             (self.felt.tolerance, self.felt.iterations) = level;
@@ -51,7 +51,7 @@ impl Search {
                 }
                 break;
             }
-            let Some(more) = self.separated_at(start, self.felt.numbers.max_residual * before.0) else {
+            let Some(more) = self.separated_at(start, self.felt.parameters.max_residual * before.0) else {
                 break;
             };
             (last, found) = (level, Some(more));
@@ -107,9 +107,10 @@ impl Search {
     /// which vanishes in slow samples. With noise no piece will be exact.
     fn left_by(&self, clusters: &[Cluster]) -> [usize; 3] {
         let told = self.told(clusters);
-        let leaves_nothing = |own: &&&Cluster| own.variance() <= self.felt.numbers.nothing;
+        let leaves_nothing = |own: &&&Cluster| own.variance() <= self.felt.parameters.max_exact_residual;
         let leaves_much = |own: &&&Cluster| {
-            !self.is_exact(own) && slow_share(&self.felt, &own.representatives) >= self.felt.numbers.vanishing
+            !self.is_exact(own)
+                && slow_share(&self.felt, &own.representatives) >= self.felt.parameters.max_slow_share
         };
         [told.iter().filter(leaves_nothing).count(), told.par_iter().filter(leaves_much).count(), told.len()]
     }
@@ -125,7 +126,7 @@ impl Search {
     /// Whether a cluster is of one part: it is exact, or the model is not, and what it leaves is an error of the model.
     pub(super) fn is_settled(&self, cluster: &Cluster) -> bool {
         let is_uneven =
-            || self.is_told(cluster) && calm_share(&self.felt, cluster) < self.felt.numbers.uneven;
+            || self.is_told(cluster) && calm_share(&self.felt, cluster) < self.felt.parameters.max_calm_share;
         self.is_exact(cluster) || !self.has_exact_model && is_uneven()
     }
 
@@ -136,7 +137,7 @@ impl Search {
 
     /// Whether a cluster has enough informative values to tell whether one motion explains it. One motion explains any few sensors.
     fn is_told(&self, cluster: &Cluster) -> bool {
-        cluster.freedom >= self.felt.numbers.min_freedom
+        cluster.freedom >= self.felt.parameters.min_freedom
     }
 
     /// Those of these clusters that have enough.
@@ -147,7 +148,8 @@ impl Search {
     /// Whether a quarter of the clusters leave nothing, so that a finer idea of what is exact may find more.
     fn quarter_leaves_nothing(&self, clusters: &[Cluster]) -> bool {
         let told = self.told(clusters);
-        4 * told.iter().filter(|own| own.variance() <= self.felt.numbers.nothing).count() >= told.len()
+        4 * told.iter().filter(|own| own.variance() <= self.felt.parameters.max_exact_residual).count()
+            >= told.len()
     }
 
     fn complete(&mut self, clusters: &[Cluster]) {

@@ -32,13 +32,13 @@ impl Search {
         let [first, second] = &pieces[..] else { return None };
         let both = Cluster::union(&self.felt, first, second);
         let saving = first.description_length + second.description_length - both.description_length;
-        if saving > self.felt.numbers.min_saving {
+        if saving > self.felt.parameters.min_saving {
             return None;
         }
         let length = self.learned(cluster.sensors.clone()).description_length;
         let before = self.felt.completed.clone();
         let pieces = self.assigned(pieces, &cluster.sensors);
-        if self.length_of(&pieces, &cluster.sensors) - length > self.felt.numbers.min_saving {
+        if self.length_of(&pieces, &cluster.sensors) - length > self.felt.parameters.min_saving {
             self.felt.completed = before;
             return None;
         }

@@ -9,7 +9,7 @@ use super::memory::Memory;
 use super::roots::{Roots, product};
 use super::search::Search;
 use crate::numerics::rng::stream;
-use crate::stages::numbers::Numbers;
+use crate::stages::parameters::Parameters;
 
 /// Sensors of each pair of opposite faces.
 const SENSORS: usize = 10;
@@ -24,12 +24,12 @@ pub(super) fn felt_of(velocities: &Mat<f64>) -> (Felt, Mat<f64>) {
     let roots = Roots { values, thresholds: sizes.clone(), signed: false };
     let scales = roots.scales();
     let roots = roots.scaled(&scales).equalised(&sizes, 0.0);
-    let numbers = Numbers::default();
-    let completion = Completion::new(&roots, numbers.completion_ridge);
+    let parameters = Parameters::default();
+    let completion = Completion::new(&roots, parameters.completion_ridge);
     let (completed, iterations) = (completion.velocities, ITERATIONS);
     let memory = Memory::default();
     let felt =
-        Felt { roots, completed, sizes, tolerance: numbers.min_tolerance, iterations, numbers, memory };
+        Felt { roots, completed, sizes, tolerance: parameters.min_tolerance, iterations, parameters, memory };
     (felt, completion.affinities)
 }
 

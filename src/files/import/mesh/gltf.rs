@@ -2,6 +2,7 @@
 //!
 //! glTF's y-axis points up, and that of a robot's description is its z-axis; so, as Drake does, y becomes z.
 
+use std::borrow::Cow;
 use std::collections::BTreeSet;
 use std::path::{Component, Path};
 
@@ -18,6 +19,8 @@ const U8: u32 = 5121;
 const U16: u32 = 5123;
 const U32: u32 = 5125;
 const F32: u32 = 5126;
+/// How extensions begin that change only what a surface looks like.
+const ONLY_LOOKS: [&str; 3] = ["KHR_texture_", "KHR_materials_", "KHR_lights_"];
 /// What three successive corners are: a triangle each, a strip of triangles, or a fan of them. All else has no surface.
 const TRIANGLES: u32 = 4;
 const STRIP: u32 = 5;
@@ -106,14 +109,20 @@ pub(super) fn triangles(bytes: &[u8], path: &Path, most_bytes: u64) -> Result<Ve
     let (text, own) = if bytes.starts_with(b"glTF") { chunks(bytes)? } else { (bytes, None) };
     let document: Document =
         serde_json::from_slice(text).map_err(|error| format!("is no glTF 2.0: {error}"))?;
-    if let Some(extension) = document.extensions_required.first() {
+    let is_seen_only = |extension: &&String| ONLY_LOOKS.iter().any(|start| extension.starts_with(start));
+    if let Some(extension) = document.extensions_required.iter().find(|one| !is_seen_only(one)) {
         return Err(format!("needs the extension {extension}, which is not read; export it without"));
     }
-    let buffers = document.buffers.iter().map(|buffer| match &buffer.uri {
-        Some(uri) => buffer_at(uri, path, most_bytes),
-        None => own.map(<[u8]>::to_vec).ok_or_else(|| "has a buffer without its bytes".to_owned()),
-    });
-    Reader { buffers: buffers.collect::<Result<_, Wrong>>()?, document, triangles: Vec::new() }.read()
+    let (mut buffers, mut left) = (Vec::new(), most_bytes);
+    for (at, buffer) in document.buffers.iter().enumerate() {
+        let bytes = match &buffer.uri {
+            Some(uri) => Cow::Owned(buffer_at(uri, path, left)?),
+            None => Cow::Borrowed(own.filter(|_| at == 0).ok_or("has a buffer without its bytes")?),
+        };
+        left = left.saturating_sub(bytes.len() as u64);
+        buffers.push(bytes);
+    }
+    Reader { buffers, document, triangles: Vec::new() }.read()
 }
 
 /// The two chunks of a .glb: its text, and its bytes, if it has any.
@@ -142,9 +151,10 @@ fn buffer_at(uri: &str, path: &Path, most_bytes: u64) -> Result<Vec<u8>, Wrong> 
             data.split_once(";base64,").ok_or("has a buffer that is not in base64; export it anew")?;
         return STANDARD.decode(code).map_err(|error| format!("has a buffer that is no base64: {error}"));
     }
-    let name = uri.replace("%20", " ");
+    let name = decoded(uri).ok_or("has a buffer whose name is no text")?;
     let wrong = |what: String| format!("has its buffer in {}, which {what}", name.escape_debug());
-    let is_beside = Path::new(&name).components().all(|part| matches!(part, Component::Normal(_)));
+    let is_beside =
+        Path::new(&name).components().all(|part| matches!(part, Component::Normal(_) | Component::CurDir));
     if !is_beside {
         return Err(wrong("is not beside it; copy it there".to_owned()));
     }
@@ -156,19 +166,32 @@ fn buffer_at(uri: &str, path: &Path, most_bytes: u64) -> Result<Vec<u8>, Wrong> 
     std::fs::read(&file).map_err(|error| wrong(format!("cannot be read: {error}")))
 }
 
-struct Reader {
+/// A name in which `%20` and the like stand for a byte each; none if it is no text.
+fn decoded(uri: &str) -> Option<String> {
+    let (mut bytes, mut rest) = (Vec::new(), uri.as_bytes());
+    while let Some((&first, others)) = rest.split_first() {
+        let code = others.get(..2).filter(|_| first == b'%').and_then(|code| std::str::from_utf8(code).ok());
+        let byte = code.and_then(|code| u8::from_str_radix(code, 16).ok());
+        bytes.push(byte.unwrap_or(first));
+        rest = if byte.is_some() { &others[2..] } else { others };
+    }
+    String::from_utf8(bytes).ok()
+}
+
+struct Reader<'a> {
     document: Document,
-    buffers: Vec<Vec<u8>>,
+    buffers: Vec<Cow<'a, [u8]>>,
     triangles: Vec<[Column<f64>; 3]>,
 }
 
-impl Reader {
+impl Reader<'_> {
     /// The triangles of all nodes of the scene, or of all nodes that are in no other one if there is no scene.
     fn read(mut self) -> Result<Vec<[Column<f64>; 3]>, Wrong> {
         let Document { nodes, scenes, scene, .. } = &self.document;
-        let roots = match scenes.get(scene.unwrap_or(0)) {
-            Some(scene) => scene.nodes.clone(),
-            None => {
+        let roots = match (scenes.get(scene.unwrap_or(0)), scene) {
+            (Some(scene), _) => scene.nodes.clone(),
+            (None, Some(_)) => return Err("has a scene that is not there".to_owned()),
+            (None, None) => {
                 let inner: BTreeSet<usize> =
                     nodes.iter().flat_map(|node| node.children.iter().copied()).collect();
                 (0..nodes.len()).filter(|node| !inner.contains(node)).collect()
@@ -195,12 +218,21 @@ impl Reader {
     /// Adds the triangles of a mesh at a place.
     fn add(&mut self, mesh: usize, place: &Matrix4<f64>) -> Result<(), Wrong> {
         let mesh = self.document.meshes.get(mesh).ok_or("has a node with a mesh that is not there")?;
+        // A mirror image looks inward; its corners then go round clockwise.
+        let is_mirrored = place.fixed_view::<3, 3>(0, 0).determinant() < 0.0;
         let mut new = Vec::new();
         for primitive in &mesh.primitives {
-            let (mode, Some(position)) = (primitive.mode.unwrap_or(TRIANGLES), primitive.attributes.position)
+            let mode = primitive.mode.unwrap_or(TRIANGLES);
+            let Some(position) = primitive.attributes.position.filter(|_| (TRIANGLES..=FAN).contains(&mode))
             else {
                 continue;
             };
+            let ends = self.document.accessors.get(primitive.indices.unwrap_or(position));
+            let ends = ends.map_or(0, |accessor| accessor.count);
+            let count = if mode == TRIANGLES { ends / 3 } else { ends.saturating_sub(2) };
+            if self.triangles.len().saturating_add(new.len()).saturating_add(count) > MOST_TRIANGLES {
+                return Err(too_many());
+            }
             let corners: Vec<Column<f64>> = self
                 .corners(position)?
                 .into_iter()
@@ -214,18 +246,17 @@ impl Reader {
                 let corner = corners.get(order[at]).copied();
                 corner.ok_or_else(|| "has a triangle without a corner".to_owned())
             };
-            let of = |[a, b, c]: [usize; 3]| Ok::<_, Wrong>([corner(a)?, corner(b)?, corner(c)?]);
-            let inner = 0..order.len().saturating_sub(2);
-            let places: Vec<[usize; 3]> = match mode {
-                TRIANGLES => (0..order.len() / 3).map(|at| [3 * at, 3 * at + 1, 3 * at + 2]).collect(),
-                STRIP => inner.map(|at| [at, at + 1 + at % 2, at + 2 - at % 2]).collect(),
-                FAN => inner.map(|at| [0, at + 1, at + 2]).collect(),
-                _ => Vec::new(),
-            };
-            if self.triangles.len() + new.len() + places.len() > MOST_TRIANGLES {
-                return Err(too_many());
+            for at in 0..count {
+                let [a, mut b, mut c] = match mode {
+                    STRIP => [at, at + 1 + at % 2, at + 2 - at % 2],
+                    FAN => [0, at + 1, at + 2],
+                    _ => [3 * at, 3 * at + 1, 3 * at + 2],
+                };
+                if is_mirrored {
+                    (b, c) = (c, b);
+                }
+                new.push([corner(a)?, corner(b)?, corner(c)?]);
             }
-            new.extend(places.into_iter().map(of).collect::<Result<Vec<_>, Wrong>>()?);
         }
         self.triangles.extend(new);
         Ok(())

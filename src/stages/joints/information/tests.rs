@@ -8,7 +8,7 @@ use crate::numerics::rng::stream;
 /// The information between two variables, samples × components.
 fn between(x: &DMatrix<f64>, y: &DMatrix<f64>) -> f64 {
     let own = |values: &DMatrix<f64>| {
-        Gaussian::new(values.transpose() * values, Numbers::default().component_ridge)
+        Gaussian::new(values.transpose() * values, Parameters::default().component_ridge)
     };
     mutual_information(&own(x), &own(y), &(x.transpose() * y))
 }

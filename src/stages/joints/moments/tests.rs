@@ -24,7 +24,7 @@ fn motions(samples: usize) -> Vec<MotionSubspace> {
 #[test]
 fn parts_that_share_a_joint_feel_its_speed() {
     let motions = motions(5000);
-    let moments = Moments::new(&motions, 5000, 7, &Numbers::default());
+    let moments = Moments::new(&motions, 5000, 7, &Parameters::default());
     let found = moments.dependence().correlations;
     // The ridge takes some thousandths.
     assert!(found[(0, 1)] > 0.995, "{found}");
@@ -53,7 +53,7 @@ fn a_speed_is_not_the_difference_of_two_squares() {
     let lacks = together(components(0, &[1, 2]));
     let has = together([components(1, &[0, 1, 2]), components(0, &[0])].concat());
     let correlation = |a: MotionSubspace, b: MotionSubspace| {
-        Moments::new(&[a, b], 5000, 1, &Numbers::default()).dependence().correlations[(0, 1)]
+        Moments::new(&[a, b], 5000, 1, &Parameters::default()).dependence().correlations[(0, 1)]
     };
     let right = correlation(motions[0].clone(), motions[1].clone());
     let wrong = correlation(lacks, has);
@@ -65,7 +65,7 @@ fn a_part_that_feels_nothing_correlates_with_none() {
     let mut motions = motions(100);
     motions.push(MotionSubspace { rank: 0, basis: Vec::new() });
     motions[1].basis.fill(0.0);
-    let found = Moments::new(&motions, 100, 2, &Numbers::default()).dependence().correlations;
+    let found = Moments::new(&motions, 100, 2, &Parameters::default()).dependence().correlations;
     assert_eq!((found[(0, 3)], found[(0, 1)]), (0.0, 0.0));
     assert!(found.iter().all(|cosine| (0.0..=1.0).contains(cosine)));
 }

@@ -40,7 +40,7 @@ fn many_singles() -> (Tactile, RigidParts) {
 fn every_sensor_is_on_a_part_of_the_tree() {
     let (tactile, parts) = many_singles();
     let (refined, joints) =
-        refine(&tactile, false, parts.clone(), &Numbers::default(), &mut stream(1, 1, "co-motion", 0));
+        refine(&tactile, false, parts.clone(), &Parameters::default(), &mut stream(1, 1, "co-motion", 0));
     assert_eq!(joints.ranks.keys().copied().collect::<Vec<_>>(), [0, 1]);
     assert!(refined.labels.iter().all(|label| *label < 2) && refined.unassigned.is_empty());
     assert_eq!(refined.labels[..60], parts.labels[..60]);
@@ -81,7 +81,7 @@ fn small_part(c: impl Fn(usize) -> [f64; 3]) -> (Tactile, RigidParts) {
 #[test]
 fn a_small_cluster_is_a_part_unless_the_joints_need_it_elsewhere() {
     let refined = |(tactile, parts): (Tactile, RigidParts)| {
-        refine(&tactile, false, parts, &Numbers::default(), &mut stream(1, 1, "co-motion", 0)).0.labels
+        refine(&tactile, false, parts, &Parameters::default(), &mut stream(1, 1, "co-motion", 0)).0.labels
     };
     let sign = |sensor: usize| if sensor.is_multiple_of(2) { 1.0 } else { -1.0 };
     let foot = refined(small_part(|sensor| [sign(sensor), sensor as f64 / 6.0 - 0.4, 0.0]));
@@ -99,7 +99,8 @@ fn what_a_part_feels_only_together_comes_to_it_as_a_whole() {
     let loadings: Vec<Vec<f64>> =
         (0..6).map(|sensor| (f64::from(sensor) * PI / 3.0).sin_cos()).map(|(a, b)| vec![a, b]).collect();
     let (tactile, parts) = with_small_part(&[&first, &ends[1], &last], &sides[1], &loadings);
-    let (refined, _) = refine(&tactile, false, parts, &Numbers::default(), &mut stream(1, 1, "co-motion", 0));
+    let (refined, _) =
+        refine(&tactile, false, parts, &Parameters::default(), &mut stream(1, 1, "co-motion", 0));
     assert_eq!(refined.labels[60..], [1; 6]);
 }
 
@@ -110,7 +111,8 @@ fn pieces_of_several_parts_come_to_their_own() {
         [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]].map(|c| c.to_vec()).to_vec();
     let both = ends[1].with(&ends[2]);
     let (tactile, parts) = with_small_part(&sides.iter().collect::<Vec<_>>(), &both, &loadings);
-    let (refined, _) = refine(&tactile, false, parts, &Numbers::default(), &mut stream(1, 1, "co-motion", 0));
+    let (refined, _) =
+        refine(&tactile, false, parts, &Parameters::default(), &mut stream(1, 1, "co-motion", 0));
     assert_eq!(refined.labels[80..], [1, 2, 1, 2]);
 }
 
@@ -124,7 +126,8 @@ fn a_sensor_whose_next_part_is_spurious_is_assigned_to_the_one_after() {
     parts.residuals.push(0.0);
     parts.alternatives.push(vec![(3, 0.1), (2, 0.12), (0, 0.9)]);
     parts.unassigned.push(4);
-    let (refined, _) = refine(&tactile, false, parts, &Numbers::default(), &mut stream(1, 1, "co-motion", 0));
+    let (refined, _) =
+        refine(&tactile, false, parts, &Parameters::default(), &mut stream(1, 1, "co-motion", 0));
     assert_eq!((refined.labels[60..].to_vec(), refined.residuals[66]), (vec![1, 1, 1, 1, 1, 1, 2], 0.12));
 }
 
@@ -133,7 +136,7 @@ fn unassigned_clusters_alone_are_parts() {
     let (tactile, mut parts) = many_singles();
     parts.unassigned = (0..=*parts.labels.iter().max().unwrap()).collect();
     let (refined, joints) =
-        refine(&tactile, false, parts, &Numbers::default(), &mut stream(1, 1, "co-motion", 0));
+        refine(&tactile, false, parts, &Parameters::default(), &mut stream(1, 1, "co-motion", 0));
     assert_eq!(joints.tree.len() + 1, joints.ranks.len());
     assert!(refined.labels.iter().all(|label| joints.ranks.contains_key(label)));
 }

@@ -44,7 +44,7 @@ fn the_tree_is_recovered_with_joints_that_are_locked_and_that_never_are() {
             false,
             &known(&agent),
             None,
-            &Numbers::default(),
+            &Parameters::default(),
             &mut stream(1, 1, "co-motion", 0),
         );
         assert_eq!(
@@ -69,7 +69,7 @@ fn only_simultaneous_motion_tells_the_tree() {
             false,
             &known(&agent),
             None,
-            &Numbers::default(),
+            &Parameters::default(),
             &mut stream(1, 1, "co-motion", 0),
         );
         found.pairs.iter().find(|pair| (pair.part, pair.other) == (0, 1)).unwrap().correlation
@@ -92,7 +92,7 @@ fn the_number_of_threads_changes_no_bit() {
                 false,
                 &known(&agent),
                 None,
-                &Numbers::default(),
+                &Parameters::default(),
                 &mut stream(1, 1, "co-motion", 0),
             )
         })

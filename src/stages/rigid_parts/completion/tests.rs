@@ -4,7 +4,7 @@ use rand::RngExt;
 
 use super::*;
 use crate::numerics::rng::stream;
-use crate::stages::numbers::Numbers;
+use crate::stages::parameters::Parameters;
 
 /// Normal velocities, samples × sensors, of three parts of so many sensors, each of a motion of rank four.
 fn velocities(sensors: usize) -> Mat<f64> {
@@ -25,7 +25,7 @@ fn roots(velocities: &Mat<f64>, signed: bool) -> Roots {
 fn what_is_not_felt_is_completed_and_parts_show() {
     let velocities = velocities(30);
     for signed in [false, true] {
-        let found = Completion::new(&roots(&velocities, signed), Numbers::default().completion_ridge);
+        let found = Completion::new(&roots(&velocities, signed), Parameters::default().completion_ridge);
         let error = (&found.velocities - &velocities).squared_norm_l2() / velocities.squared_norm_l2();
         assert!(error < 0.01, "signed {signed}: {error}");
         let affinities = |same: bool| {
@@ -45,10 +45,10 @@ fn the_number_of_threads_changes_no_bit_and_no_touch_is_no_failure() {
     let roots = roots(&velocities(10), false);
     let on = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| Completion::new(&roots, Numbers::default().completion_ridge).velocities)
+        pool.install(|| Completion::new(&roots, Parameters::default().completion_ridge).velocities)
     };
     assert_eq!(on(1), on(3));
     let nothing = Roots { values: Mat::zeros(600, 30), thresholds: roots.thresholds.clone(), signed: false };
-    let found = Completion::new(&nothing, Numbers::default().completion_ridge);
+    let found = Completion::new(&nothing, Parameters::default().completion_ridge);
     assert!(found.affinities.norm_max() <= 1.0 && found.velocities.norm_max().is_finite());
 }

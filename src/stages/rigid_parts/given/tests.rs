@@ -36,7 +36,7 @@ fn unexplained(w: &[f64], found: &MotionSubspace) -> f64 {
 fn motions_are_recovered_from_few_samples() {
     let ranks = [3, 5, 6];
     let (motions, tactile, labels) = felt(&ranks);
-    let found = motions_of_parts(&tactile, false, &labels, None, &Numbers::default());
+    let found = motions_of_parts(&tactile, false, &labels, None, &Parameters::default());
     assert_eq!(found.keys().copied().collect::<Vec<_>>(), [7, 8, 9]);
     for ((w, k), found) in motions.iter().zip(ranks).zip(found.values()) {
         let error = unexplained(w, found);
@@ -48,8 +48,9 @@ fn motions_are_recovered_from_few_samples() {
 #[test]
 fn a_lower_rank_is_not_the_whole_motion() {
     let (motions, tactile, labels) = felt(&[5, 5]);
-    for (w, found) in
-        motions.iter().zip(motions_of_parts(&tactile, false, &labels, Some(3), &Numbers::default()).values())
+    for (w, found) in motions
+        .iter()
+        .zip(motions_of_parts(&tactile, false, &labels, Some(3), &Parameters::default()).values())
     {
         assert!(found.rank == 3 && unexplained(w, found) > 0.1);
     }
@@ -58,12 +59,12 @@ fn a_lower_rank_is_not_the_whole_motion() {
 #[test]
 fn what_feels_nothing_has_no_motion() {
     let (motions, tactile, labels) = felt(&[4, 0, 3]);
-    let found = motions_of_parts(&tactile, false, &labels, None, &Numbers::default());
+    let found = motions_of_parts(&tactile, false, &labels, None, &Parameters::default());
     assert_eq!(found.values().map(|own| own.rank > 0).collect::<Vec<_>>(), [true, false, true]);
     assert!(unexplained(&motions[2], &found[&9]) < 1e-3);
     let still = Tactile { samples: 9, pressures: vec![0.0; 18] };
     assert!(
-        motions_of_parts(&still, false, &[Some(0), Some(1)], None, &Numbers::default())
+        motions_of_parts(&still, false, &[Some(0), Some(1)], None, &Parameters::default())
             .values()
             .all(|own| own.rank == 0)
     );
@@ -71,7 +72,7 @@ fn what_feels_nothing_has_no_motion() {
     let mut once = still.clone();
     once.pressures[3] = 1.0;
     for rank in [None, Some(6)] {
-        let found = motions_of_parts(&once, false, &[Some(0), None], rank, &Numbers::default());
+        let found = motions_of_parts(&once, false, &[Some(0), None], rank, &Parameters::default());
         assert!(found.len() == 1 && found[&0].basis.iter().all(|value| value.is_finite()));
     }
 }
@@ -97,8 +98,9 @@ fn cylinders(unit: f32) -> (Vec<Vec<f64>>, Tactile, Vec<Option<usize>>) {
 fn the_ends_of_a_cylinder_complete_its_motion() {
     let (motions, tactile, labels) = cylinders(1.0);
     for rank in [None, Some(5)] {
-        for (w, found) in
-            motions.iter().zip(motions_of_parts(&tactile, false, &labels, rank, &Numbers::default()).values())
+        for (w, found) in motions
+            .iter()
+            .zip(motions_of_parts(&tactile, false, &labels, rank, &Parameters::default()).values())
         {
             assert!(unexplained(w, found) < 1e-3 && found.rank >= 5, "{}", unexplained(w, found));
         }
@@ -109,7 +111,7 @@ fn the_ends_of_a_cylinder_complete_its_motion() {
 fn the_unit_of_pressure_changes_nothing() {
     let sizes = |unit: f32| {
         let (_, tactile, labels) = cylinders(unit);
-        let found = motions_of_parts(&tactile, false, &labels, None, &Numbers::default());
+        let found = motions_of_parts(&tactile, false, &labels, None, &Parameters::default());
         let size = |own: &MotionSubspace, at: usize| {
             own.basis.iter().skip(at).step_by(own.rank).map(|w| w * w).sum::<f64>() / SAMPLES as f64
         };

@@ -9,7 +9,7 @@ use super::super::memory::Memory;
 use super::super::roots::{Roots, product};
 use super::*;
 use crate::numerics::rng::stream;
-use crate::stages::numbers::Numbers;
+use crate::stages::parameters::Parameters;
 
 /// What 24 sensors on the side of a cylinder feel, four on one end, and four on the other; and six on another part, whose motion differs
 /// by a tenth.
@@ -35,7 +35,7 @@ fn felt() -> Search {
     });
     let sizes = vec![1.0; 600];
     let roots = Roots { values, thresholds: sizes.clone(), signed: false }.equalised(&sizes, 0.0);
-    let completion = Completion::new(&roots, Numbers::default().completion_ridge);
+    let completion = Completion::new(&roots, Parameters::default().completion_ridge);
     let memory = Memory::default();
     let felt = Felt {
         roots,
@@ -43,7 +43,7 @@ fn felt() -> Search {
         sizes,
         tolerance: 2e-8,
         iterations: [24, 300],
-        numbers: Numbers::default(),
+        parameters: Parameters::default(),
         memory,
     };
     let mut search = Search::new(felt, completion.affinities);

@@ -30,7 +30,7 @@ fn tactile() -> (Tactile, Vec<usize>) {
 fn parts_and_their_number_are_recovered() {
     let (tactile, truth) = tactile();
     let all: Vec<usize> = (0..truth.len()).collect();
-    let found = rigid_parts(&tactile, false, &all, &Numbers::default());
+    let found = rigid_parts(&tactile, false, &all, &Parameters::default());
     assert_eq!(found.labels, truth);
     assert!(found.residuals.iter().all(|residual| *residual < 0.01));
     for ((label, residual), others) in found.labels.iter().zip(&found.residuals).zip(&found.alternatives) {
@@ -46,7 +46,7 @@ fn parts_and_their_number_are_recovered() {
 fn other_sensors_go_to_the_part_that_explains_them() {
     let (tactile, truth) = tactile();
     let some: Vec<usize> = (0..truth.len()).filter(|sensor| sensor % 3 != 0).collect();
-    let found = rigid_parts(&tactile, false, &some, &Numbers::default());
+    let found = rigid_parts(&tactile, false, &some, &Parameters::default());
     assert!(adjusted_rand_index(&found.labels, &truth) > 0.99);
 }
 
@@ -56,7 +56,7 @@ fn the_number_of_threads_changes_no_bit() {
     let some: Vec<usize> = (0..tactile.sensors()).step_by(2).collect();
     let on = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| rigid_parts(&tactile, false, &some, &Numbers::default()))
+        pool.install(|| rigid_parts(&tactile, false, &some, &Parameters::default()))
     };
     assert_eq!(on(1), on(3));
 }
@@ -69,7 +69,7 @@ fn what_no_motion_explains_is_one_part() {
         &Tactile { samples: 500, pressures },
         false,
         &(0..40).collect::<Vec<usize>>(),
-        &Numbers::default(),
+        &Parameters::default(),
     );
     assert_eq!(found.labels, [0; 40]);
     assert!(found.residuals.iter().sum::<f64>() > 40.0 * 0.1, "{:?}", found.residuals);
@@ -79,7 +79,7 @@ fn what_no_motion_explains_is_one_part() {
 fn the_union_of_two_parts_has_a_longer_description_than_both() {
     let (tactile, truth) = tactile();
     let every: Vec<usize> = (0..truth.len()).collect();
-    let mut felt = Prepared::new(&tactile, false, &every, &Numbers::default()).search(&every).felt;
+    let mut felt = Prepared::new(&tactile, false, &every, &Parameters::default()).search(&every).felt;
     felt.tolerance = 3e-4;
     let own = |parts: &[usize]| {
         (0..truth.len()).filter(|sensor| parts.contains(&truth[*sensor])).collect::<Vec<_>>()
@@ -113,7 +113,7 @@ fn a_large_face_joins_the_part_that_it_shares_components_with() {
         &Tactile { samples: SAMPLES, pressures },
         false,
         &(0..120).collect::<Vec<usize>>(),
-        &Numbers::default(),
+        &Parameters::default(),
     );
     assert_eq!(found.labels, (0..120).map(|sensor| sensor / 80).collect::<Vec<usize>>());
     assert!(found.unassigned.is_empty());
@@ -135,7 +135,7 @@ fn a_sensor_that_feels_something_at_few_samples_makes_no_part() {
         .collect();
     let tactile = Tactile { samples, pressures: [pressures, few].concat() };
     let found =
-        rigid_parts(&tactile, false, &(0..tactile.sensors()).collect::<Vec<_>>(), &Numbers::default());
+        rigid_parts(&tactile, false, &(0..tactile.sensors()).collect::<Vec<_>>(), &Parameters::default());
     assert_eq!(found.labels[..truth.len()], truth);
     assert_eq!((found.motions.len(), &found.unassigned[..]), (5, &[][..]));
 }

@@ -6,7 +6,7 @@ use super::super::memory::Memory;
 use super::super::roots::Roots;
 use super::*;
 use crate::numerics::rng::stream;
-use crate::stages::numbers::Numbers;
+use crate::stages::parameters::Parameters;
 
 /// What 24 sensors on each of two parts feel, whose motions of rank four differ by a share of their size; and noise of such a size,
 /// as a share of the largest root.
@@ -22,14 +22,14 @@ fn felt(difference: f64, noise: f64) -> Felt {
     });
     let sizes = vec![1.0; 500];
     let roots = Roots { values, thresholds: sizes.clone(), signed: false }.equalised(&sizes, 0.0);
-    let completed = Completion::new(&roots, Numbers::default().completion_ridge).velocities;
+    let completed = Completion::new(&roots, Parameters::default().completion_ridge).velocities;
     Felt {
         roots,
         completed,
         sizes,
         tolerance: 2e-5,
         iterations: [24, 100],
-        numbers: Numbers::default(),
+        parameters: Parameters::default(),
         memory: Memory::default(),
     }
 }

@@ -8,7 +8,7 @@ use super::super::roots::product;
 use super::super::testing::felt_of;
 use super::*;
 use crate::numerics::rng::stream;
-use crate::stages::numbers::Numbers;
+use crate::stages::parameters::Parameters;
 
 /// What 30 sensors of one part feel at 600 samples, of which every tenth has an error of this size.
 fn felt(error: f64) -> Felt {
@@ -36,8 +36,8 @@ fn samples_with_an_error_weigh_less() {
         |wrong: bool| median((0..600).filter(|t| (t % 10 == 0) == wrong).map(|t| felt.sizes[t]).collect());
     assert!(typical(true) > 3.0 && typical(false) < 1.3, "{} and {}", typical(true), typical(false));
     let after = learned_longer(&felt);
-    assert!(before.variance() > 3.0 * Numbers::default().min_tolerance, "{}", before.variance());
-    assert!(after.variance() < 0.5 * Numbers::default().min_tolerance, "{}", after.variance());
+    assert!(before.variance() > 3.0 * Parameters::default().min_tolerance, "{}", before.variance());
+    assert!(after.variance() < 0.5 * Parameters::default().min_tolerance, "{}", after.variance());
     let root = felt.roots.values[(10, 0)] * felt.sizes[10];
     assert!((root - self::felt(0.3).roots.values[(10, 0)]).abs() < 1e-12, "the true size is kept");
 }

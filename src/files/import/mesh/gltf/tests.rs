@@ -62,11 +62,14 @@ fn a_buffer_may_be_beside_the_file_and_nowhere_else() {
     let path = folder.path().join("m.gltf");
     std::fs::write(folder.path().join("m one.bin"), bytes()).unwrap();
     let read_as = |uri: &str, most| triangles(text("", r#","mode":6"#, uri).as_bytes(), &path, most);
-    assert_eq!(read_as("m%20one.bin", 1000).unwrap().len(), 2);
+    for uri in ["m%20one.bin", "./m one.bin", "%6D%20one.bin"] {
+        assert_eq!(read_as(uri, 1000).unwrap().len(), 2, "{uri}");
+    }
     for (uri, most, wrong) in [
         ("m%20one.bin", 51, "has its buffer in m one.bin, which has 52 bytes, but at most 51 are read"),
         ("gone.bin", 1000, "has its buffer in gone.bin, which cannot be read"),
         ("../m.bin", 1000, "has its buffer in ../m.bin, which is not beside it"),
+        ("%ff.bin", 1000, "whose name is no text"),
         ("/etc/passwd", 1000, "is not beside it"),
         ("data:text/plain,abc", 1000, "not in base64"),
         ("data:;base64,#", 1000, "no base64"),
@@ -77,10 +80,23 @@ fn a_buffer_may_be_beside_the_file_and_nowhere_else() {
 }
 
 #[test]
+fn a_mirrored_node_looks_outward_still_and_looks_alone_may_need_extensions() {
+    let square = area(&embedded("", r#","mode":6"#));
+    let mirrored = area(&embedded(r#","scale":[-1,1,1]"#, r#","mode":6"#));
+    assert_eq!((square, mirrored), (Column::new(0.0, 0.0, 2.0), Column::new(0.0, 0.0, 2.0)));
+    let uri = format!("data:;base64,{}", STANDARD.encode(bytes()));
+    let text = text("", r#","mode":6"#, &uri);
+    let with = text.replacen(r#""asset""#, r#""extensionsRequired":["KHR_texture_basisu"],"asset""#, 1);
+    assert_eq!(read_as(&with).unwrap(), read_as(&text).unwrap());
+}
+
+#[test]
 fn what_cannot_be_read_is_named() {
     let whole = text("", "", &format!("data:;base64,{}", STANDARD.encode(bytes())));
     for (from, to, wrong) in [
         (r#""asset""#, r#""extensionsRequired":["KHR_draco"],"asset""#, "needs the extension KHR_draco"),
+        (r#""asset""#, r#""scene":1,"asset""#, "a scene that is not there"),
+        (r#""buffers":["#, r#""buffers":[{},"#, "a buffer without its bytes"),
         (r#""mesh":0"#, r#""mesh":3"#, "a mesh that is not there"),
         (r#""mesh":0"#, r#""mesh":0,"children":[1,1]"#, "a node that is not there"),
         (r#""nodes":[{"#, r#""nodes":[{"children":[1,1]},{"#, "a node in two places"),
@@ -88,7 +104,7 @@ fn what_cannot_be_read_is_named() {
         (r#""POSITION":0"#, r#""POSITION":1"#, "a VEC3 of a type that is not read"),
         ("\"count\":4", "\"count\":5", "a buffer that is cut off"),
         ("\"count\":4", "\"count\":0", "a buffer that is cut off"),
-        ("\"count\":4", "\"count\":4611686018427387904", "a buffer that is cut off"),
+        ("\"count\":4", "\"count\":4611686018427387904", "more than 10000000 triangles"),
         ("\"byteLength\":52}],\"buffers\"", "\"byteLength\":53}],\"buffers\"", "a buffer that is cut off"),
         (
             "\"byteLength\":52}],\"buffers\"",

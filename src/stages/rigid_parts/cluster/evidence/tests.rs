@@ -6,7 +6,7 @@ use rand::RngExt;
 use super::super::super::testing::felt_of;
 use super::*;
 use crate::numerics::rng::stream;
-use crate::stages::numbers::Numbers;
+use crate::stages::parameters::Parameters;
 use crate::stages::rigid_parts::roots::{columns, product};
 
 /// What these roots are above 0, and how often.
@@ -39,8 +39,9 @@ fn two_parts() -> ([Evidence; 2], [Vec<Vec<f64>>; 2]) {
             let squares = roots(own.col_as_slice(sensor)).0.iter().map(|root| root * root).sum::<f64>();
             (squares / 300.0).sqrt()
         };
-        let evidence =
-            part.evidence(&(0..30).map(scale).collect::<Vec<_>>(), Numbers::default().min_tolerance).unwrap();
+        let evidence = part
+            .evidence(&(0..30).map(scale).collect::<Vec<_>>(), Parameters::default().min_tolerance)
+            .unwrap();
         (evidence, few.iter().map(|&sensor| roots(velocities.col_as_slice(sensor)).0).collect())
     });
     let [(a, of_a), (b, of_b)] = parts;
