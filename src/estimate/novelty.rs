@@ -18,6 +18,8 @@ const MAX_SAMPLES: usize = 1500;
 const REST: f64 = 0.1;
 /// Squared cosine from which on samples next to each other are of one state.
 const SAME: f64 = 0.5;
+/// The same of the least alike sample from which on a state has been left.
+const LEFT: f64 = 0.9;
 /// A movement consists of few motions if so many principal components explain this share of what sensors feel, each in units of its own.
 /// In one rhythm, 15 components did so at most (15 bodies of 3 to 13 parts), and in a walk that was looped 55.
 const FEW: usize = 30;
@@ -45,13 +47,19 @@ pub(super) fn novelty(tactile: &Tactile, signed: bool, sensors: &[usize]) -> f64
     let left = |sample: usize| {
         let squares: Vec<f64> =
             (0..moving.len()).map(|other| cosines[(other, sample)] * cosines[(other, sample)]).collect();
-        let before = squares[..sample].iter().rposition(|square| *square < SAME).map_or(0, |at| at + 1);
-        let after =
-            squares[sample..].iter().position(|square| *square < SAME).unwrap_or(squares.len() - sample);
-        let others = squares[..before].iter().chain(&squares[sample + after..]);
-        1.0 - others.fold(0.0, |most, square| f64::max(most, *square))
+        let earlier = other_states(squares[..sample].iter().rev());
+        let later = other_states(squares[sample + 1..].iter());
+        1.0 - earlier.chain(later).fold(0.0, f64::max)
     };
     median((0..moving.len()).map(left).collect())
+}
+
+/// Of the squared cosines of a state with those after it, those of other states: from the first below [`SAME`] on. If none is, from the
+/// smallest on, if that is below [`LEFT`]: a slow movement may come back before it has gone that far.
+fn other_states<'a>(squares: impl Iterator<Item = &'a f64> + Clone) -> impl Iterator<Item = f64> {
+    let smallest = squares.clone().copied().fold(f64::INFINITY, f64::min);
+    let ends = move |square: &f64| *square < SAME || (SAME..LEFT).contains(&smallest) && *square == smallest;
+    squares.copied().skip_while(move |square| !ends(square))
 }
 
 /// Whether few motions explain nearly all of what some sensors feel. In: as for [`novelty`].

@@ -31,6 +31,15 @@ fn a_rhythm_repeats_itself_at_any_speed() {
 }
 
 #[test]
+fn a_loop_of_states_that_are_much_alike_repeats_itself() {
+    // The squared cosine of two states is 0.88 at least, and a movement that only goes on is new.
+    let going = |t: f64, sensor: usize| 2.0 + 0.5 * (t + sensor as f64).sin();
+    let alike = felt(0.0, |sensor, t| going(TAU * t / 20.0, sensor));
+    let onward = felt(0.0, |sensor, t| going(TAU * t / 500.0, sensor));
+    assert!(of(&alike) < 1e-3 && of(&onward) > 0.02, "{} {}", of(&alike), of(&onward));
+}
+
+#[test]
 fn movements_that_differ_are_new() {
     let several = felt(0.0, |sensor, t| {
         (0..6).map(|own| (t * (1.0 + own as f64).sqrt() + (own * sensor) as f64).sin()).sum()
