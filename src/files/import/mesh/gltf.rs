@@ -159,7 +159,11 @@ fn buffer_at(uri: &str, path: &Path, most_bytes: u64) -> Result<Vec<u8>, Wrong> 
         return Err(wrong("is not beside it; copy it there".to_owned()));
     }
     let file = path.parent().unwrap_or(Path::new("")).join(&name);
-    let size = file.metadata().map_err(|error| wrong(format!("cannot be read: {error}")))?.len();
+    let found = file.metadata().map_err(|error| wrong(format!("cannot be read: {error}")))?;
+    if !found.is_file() {
+        return Err(wrong("is no file".to_owned()));
+    }
+    let size = found.len();
     if size > most_bytes {
         return Err(wrong(format!("has {size} bytes, but at most {most_bytes} are read; simplify the mesh")));
     }

@@ -67,6 +67,7 @@ fn a_buffer_may_be_beside_the_file_and_nowhere_else() {
     }
     for (uri, most, wrong) in [
         ("m%20one.bin", 51, "has its buffer in m one.bin, which has 52 bytes, but at most 51 are read"),
+        (".", 1000, "has its buffer in ., which is no file"),
         ("gone.bin", 1000, "has its buffer in gone.bin, which cannot be read"),
         ("../m.bin", 1000, "has its buffer in ../m.bin, which is not beside it"),
         ("%ff.bin", 1000, "whose name is no text"),
