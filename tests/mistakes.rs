@@ -149,11 +149,6 @@ fn a_mistake_is_one_line_that_says_what_and_where_and_status_2() {
             "has no column of a sensor; if its columns are no times, say --time none",
         ),
         (
-            "estimate word.csv --parameter min_saving --out s",
-            "invalid value 'min_saving' for '--parameter <NAME=VALUE>': it must be NAME=VALUE",
-        ),
-        ("estimate word.csv --parameter min_saving=much --out s", "`much` is not a number"),
-        (
             "estimate word.csv --parameter saving=1 --out s",
             "no parameter is called `saving`; there are: samples, completion_ridge, ",
         ),
