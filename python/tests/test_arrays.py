@@ -139,7 +139,7 @@ def test_what_does_not_fit_the_memory_is_refused():
     for dtype in [np.float32, np.float64]:
         huge = np.broadcast_to(np.zeros(1, dtype=dtype), (10**11, 100))
         with pytest.raises(MemoryError, match="does not fit the memory"):
-            bodyschema._bodyschema.estimate(huge, (None, False), 1, (0, False), 1, None)
+            bodyschema._bodyschema.estimate(huge, (None, False), (1, {}), (0, False), 1, None)
         with pytest.raises(MemoryError, match="does not fit the memory"):
             bodyschema._bodyschema.quantise(huge, "", 1)
     with pytest.raises(MemoryError, match="does not fit the memory"):

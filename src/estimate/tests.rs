@@ -2,7 +2,15 @@
 
 use std::collections::BTreeMap;
 
+use rand::RngExt;
+
 use super::*;
+use crate::numerics::rng::stream;
+use crate::settings::{Base, Settings};
+
+fn levels() -> Quantise {
+    Settings::load_over(Some(Base::ESTIMATE), None).unwrap().quantise
+}
 
 /// One part of 12 sensors, of which it does not explain the last ones, so many.
 fn one_part(unexplained: usize) -> RigidParts {
@@ -77,6 +85,38 @@ fn where_few_sensors_feel_something_at_a_time_it_does_not_fit_unless_noise_tells
     assert_eq!(verdict(&Recording { noisy: 12, ..felt(12, 97) }), (Verdict::Good, None));
 }
 
+/// What two parts of 20 sensors feel that move independently, with three numbers of motion each.
+fn two_parts() -> Recording {
+    let mut rng = stream(1, 1, "parameters", 0);
+    let mut uniform = |count: usize| (0..count).map(|_| rng.random_range(-1.0..1.0)).collect::<Vec<f32>>();
+    let (samples, motions, loadings) = (300, uniform(2 * 3 * 300), uniform(40 * 3));
+    let pressure = |sensor: usize, t: usize| {
+        let w = &motions[3 * (samples * (sensor / 20) + t)..][..3];
+        let speed: f32 = w.iter().zip(&loadings[3 * sensor..]).map(|(w, c)| w * c).sum();
+        speed.max(0.0).powi(2)
+    };
+    let pressures = (0..40).flat_map(|sensor| (0..samples).map(move |t| (sensor, t)));
+    Recording::new(Tactile { samples, pressures: pressures.map(|(sensor, t)| pressure(sensor, t)).collect() })
+}
+
+#[test]
+fn every_parameter_at_the_ends_of_its_range_gives_an_estimate() {
+    let (recording, levels) = (two_parts(), levels());
+    let found = |parameters: &Parameters| {
+        let rng = &mut stream(1, 1, "co-motion", 0);
+        estimate(&recording, &levels, parameters, rng, &|| ()).unwrap().parts.labels
+    };
+    let truth: Vec<usize> = (0..40).map(|sensor| sensor / 20).collect();
+    assert_eq!(found(&Parameters::default()), truth);
+    for (name, value) in Parameters::NAMES.iter().zip(Parameters::default().values()) {
+        // A whole number is 1 at least, and tolerances must rise.
+        let ends = [value / 100.0, f64::max(1.0, value / 100.0), value * 100.0];
+        for parameters in ends.into_iter().filter_map(|end| Parameters::changed([(*name, end)]).ok()) {
+            assert_eq!(found(&parameters).len(), 40, "{name}");
+        }
+    }
+}
+
 #[test]
 fn sensors_that_rest_a_little_below_0_feel_nothing_there() {
     let samples = 400;
@@ -87,9 +127,7 @@ fn sensors_that_rest_a_little_below_0_feel_nothing_there() {
     let pressures = (0..24).flat_map(|sensor| (0..samples).map(move |t| touch(sensor, t))).collect();
     let recording = Recording::new(Tactile { samples, pressures });
     assert!(!recording.signed);
-    let levels =
-        crate::settings::Settings::load_over(Some(crate::settings::Base::ESTIMATE), None).unwrap().quantise;
-    let rng = &mut crate::numerics::rng::stream(1, 1, "co-motion", 0);
-    let found = estimate(&recording, &levels, &Parameters::default(), rng, &|| ()).unwrap();
+    let rng = &mut stream(1, 1, "co-motion", 0);
+    let found = estimate(&recording, &levels(), &Parameters::default(), rng, &|| ()).unwrap();
     assert!(found.parts.residuals.iter().all(|residual| residual.is_finite()));
 }

@@ -77,7 +77,7 @@ macro_rules! parameters {
 
             /// Their values, in the same order.
             #[cfg(test)]
-            fn values(&self) -> Vec<f64> {
+            pub(crate) fn values(&self) -> Vec<f64> {
                 vec![$(self.$name as f64),+]
             }
 
