@@ -42,12 +42,16 @@ def main():
 def measured(body, revision):
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
-        (folder / "body.toml").write_text(drawn(random.Random(body)))
-        (folder / "settings.toml").write_text(SETTINGS)
-        words = ["--settings", folder / "settings.toml", "--duration", DURATION, "--seed", body, "--out", folder / "felt"]
-        run("simulate", "--body", folder / "body.toml", *words)
+        feel(body, folder / "body.toml", folder / "settings.toml", folder / "felt")
         summary, truth = estimated(folder / "felt", folder / "found", body)
     return [{"body": body, "revision": revision, "sensors": summary["sensors"], "fit": summary["fit"], **truth}]
+
+
+def feel(number, body, settings, felt):
+    """Draw the robot of a number, and feel how it moves."""
+    body.write_text(drawn(random.Random(number)))
+    settings.write_text(SETTINGS)
+    run("simulate", "--body", body, "--settings", settings, "--duration", DURATION, "--seed", number, "--out", felt)
 
 
 def drawn(draw):

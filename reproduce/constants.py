@@ -87,14 +87,15 @@ def influence(can_be_set):
     index = lambda own: sum(float(row["ari"]) for row in own) / len(own)
     decisive, counted, table = 0, 0, []
     for name, value, said in can_be_set:
-        tried = [(other, rows[key, other]) for key, other in rows if key == name]
-        cells = [f"{other}: {outcome(own, default)}, {index(own):.3f}" for other, own in sorted(tried, key=lambda one: float(one[0]))]
+        tried = sorted((float(other), other, rows[key, other]) for key, other in rows if key == name)
+        outcomes = [outcome(own, default) for _, _, own in tried]
+        cells = [f"{other}: {said_of}, {index(own):.3f}" for (_, other, own), said_of in zip(tried, outcomes)]
         counted += bool(tried)
-        decisive += any("(" in outcome(own, default) for _, own in tried)
+        decisive += any("(" in said_of for said_of in outcomes)
         table.append(f"| {name} | `{value}` | {' | '.join(cells or ['–', '–'])} | {said} |")
     return [
         f"`reproduce/influence.py` halved and doubled each, all others as they are (revision {revisions(default)}), on calibration data:",
-        f"{', '.join(f'{count} of {name}' for name, count in data.items())}. With the defaults, {right(default)} of {len(default)} trees are",
+        f"{'; '.join(f'{name} (n = {count})' for name, count in data.items())}. With the defaults, {right(default)} of {len(default)} trees are",
         f"right, and the adjusted Rand index is {index(default):.3f} on average. Each cell has the value, how many trees are right, in",
         "brackets how many became wrong (−) and right (+), and the mean index.",
         f"{decisive} of the {counted} parameters that were tried change whether any tree is right.",

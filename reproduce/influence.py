@@ -12,7 +12,6 @@ import argparse
 import concurrent.futures
 import os
 import pathlib
-import random
 import re
 import sys
 import tempfile
@@ -25,6 +24,7 @@ except ModuleNotFoundError:
 
 import boxes
 import constants
+import recordings
 from estimated import ROOT, TRUTH, downloaded, estimated, noisy, resumed, revision, run
 
 COLUMNS = ["parameter", "value", "data", "recording", *TRUTH, "revision"]
@@ -111,18 +111,10 @@ def everything_felt(files, keep):
                     np.save(to / "tactile.npy", touch.astype(np.float32))
             felt(data, body, moved)
     for seed in BOXES:
-        def drawn(body, to):
-            body.write_text(boxes.drawn(random.Random(int(seed))))
-            settings = body.with_suffix(".settings")
-            settings.write_text(boxes.SETTINGS)
-            run("simulate", "--body", body, "--settings", settings, "--duration", boxes.DURATION, "--seed", seed, "--out", to)
-        felt(ROBOTS, seed, drawn)
+        felt(ROBOTS, seed, lambda body, to: boxes.feel(int(seed), body, body.with_suffix(".settings"), to))
     for name in RECORDINGS:
-        def played(body, to):
-            file = downloaded(files / f"{name}.bvh", sources[name]["url"], sources[name]["sha256"])
-            run("body", "import", file, "--min-length", design["min_length"], "--out", body)
-            run("simulate", "--body", body, "--movement", file, "--seed", design["seed"], "--out", to)
-        felt(RECORDED, name, played)
+        file = downloaded(files / f"{name}.bvh", sources[name]["url"], sources[name]["sha256"])
+        felt(RECORDED, name, lambda body, to: recordings.feel(file, design, body, to))
     return found
 
 

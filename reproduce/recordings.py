@@ -51,11 +51,16 @@ def found(file, design):
     """What `estimate` finds in a recorded movement, compared with the truth."""
     with tempfile.TemporaryDirectory() as name:
         folder, seed = pathlib.Path(name), design["seed"]
-        run("body", "import", file, "--min-length", design["min_length"], "--out", folder / "body.toml")
-        run("simulate", "--body", folder / "body.toml", "--movement", file, "--seed", seed, "--out", folder / "felt")
+        feel(file, design, folder / "body.toml", folder / "felt")
         summary, truth = estimated(folder / "felt", folder / "found", seed)
     sensors = summary["sensors"] - summary["dropped"]
     return {"samples": summary["samples"], "sensors": sensors, "fit": summary["fit"], **truth}
+
+
+def feel(file, design, body, felt):
+    """Import a recorded movement as a body, and feel it."""
+    run("body", "import", file, "--min-length", design["min_length"], "--out", body)
+    run("simulate", "--body", body, "--movement", file, "--seed", design["seed"], "--out", felt)
 
 
 def page(rows, design):

@@ -189,9 +189,8 @@ pub struct TooFewSensors {
 
 /// Estimates the parts and the tree.
 ///
-/// In: a [`Recording`], how its pressures are quantised for distances (`levels`), and the
-/// parameters. Out: the part of each of its sensors, and the tree over
-/// the parts with the bootstrap support of each edge, given the parts. Calls `tick` after each of the three steps: distances,
+/// In: a [`Recording`], how its pressures are quantised for distances (`levels`), and the parameters. Out: the part of each of its sensors,
+/// and the tree over the parts with the bootstrap support of each edge, given the parts. Calls `tick` after each of the three steps: distances,
 /// parts, joints. The same recording and state of `rng` give the same bytes on one kind of processor, whatever the number of threads.
 ///
 /// # Errors

@@ -2,15 +2,14 @@
 
 use std::path::Path;
 
-use bodyschema::estimate::{Estimate, Verdict, estimate};
+use bodyschema::estimate::Verdict;
 use bodyschema::files::touch::read_touch;
-use bodyschema::numerics::rng::stream;
 use bodyschema::recording::Recording;
-use bodyschema::settings::{Base, Settings};
 use bodyschema::stages::evaluate::score;
-use bodyschema::stages::parameters::Parameters;
 use bodyschema::stages::sense::Tactile;
 use bodyschema::stages::tree::Truth;
+
+use crate::support::estimated::estimated;
 
 /// Bones, and sensors on each.
 const BONES: usize = 13;
@@ -53,22 +52,10 @@ fn one_in(step: usize, Tactile { samples, pressures }: Tactile) -> Tactile {
     Tactile { samples, pressures: pressures.chunks(samples).step_by(step).flatten().copied().collect() }
 }
 
-fn estimated(tactile: Tactile) -> Estimate {
-    let levels = Settings::load_over(Some(Base::ESTIMATE), None).unwrap().quantise;
-    estimate(
-        &Recording::new(tactile),
-        &levels,
-        &Parameters::default(),
-        &mut stream(1, 1, "co-motion", 0),
-        &|| (),
-    )
-    .unwrap()
-}
-
 #[test]
 fn bones_and_joints_of_a_recorded_person_are_found() {
     // Half of the sensors, 20 on each bone, take half the time.
-    let found = estimated(one_in(2, touch(|_| 0)));
+    let found = estimated(&Recording::new(one_in(2, touch(|_| 0))));
     let labels = (0..BONES * SENSORS).step_by(2).map(|sensor| sensor / SENSORS).collect();
     let truth = Truth::new(labels, TREE.to_vec());
     assert_eq!(found.fit.verdict, Verdict::Good);
@@ -80,6 +67,6 @@ fn bones_and_joints_of_a_recorded_person_are_found() {
 #[test]
 fn sensors_that_are_not_read_at_the_same_time_do_not_fit() {
     // A fourth of the sensors is enough to tell, and takes much less time.
-    let found = estimated(one_in(4, touch(|sensor| 7 * sensor)));
+    let found = estimated(&Recording::new(one_in(4, touch(|sensor| 7 * sensor))));
     assert_eq!(found.fit.verdict, Verdict::DoesNotFit, "{}", found.fit);
 }

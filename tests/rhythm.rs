@@ -4,19 +4,19 @@ use std::f64::consts::TAU;
 use std::fs;
 use std::path::Path;
 
-use bodyschema::estimate::{Fit, Verdict, estimate};
+use bodyschema::estimate::{Fit, Verdict};
 use bodyschema::files::body::read_body;
 use bodyschema::numerics::rng::stream;
 use bodyschema::recording::Recording;
-use bodyschema::settings::{Base, Settings};
+use bodyschema::settings::Settings;
 use bodyschema::stages::agent::Agent;
 use bodyschema::stages::sense::sense;
 use bodyschema::stages::simulate::{Controller, Movement, Targets, Trajectory, simulate};
 use rayon::prelude::*;
 
+use crate::support::estimated::estimated;
 use crate::support::folder::Folder;
 use crate::support::small::small_chain;
-use bodyschema::stages::parameters::Parameters;
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -173,16 +173,7 @@ fn verdict(settings: &Settings) -> Fit {
     folder.write("chain.toml", small_chain());
     let agent = read_body(&folder.at("chain.toml")).unwrap().agent;
     let tactile = sense(&agent, &moved(&agent, settings, 1), &settings.sense);
-    let levels = Settings::load_over(Some(Base::ESTIMATE), None).unwrap().quantise;
-    estimate(
-        &Recording::new(tactile),
-        &levels,
-        &Parameters::default(),
-        &mut stream(1, 1, "co-motion", 0),
-        &|| (),
-    )
-    .unwrap()
-    .fit
+    estimated(&Recording::new(tactile)).fit
 }
 
 #[test]

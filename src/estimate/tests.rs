@@ -23,6 +23,12 @@ fn one_part(unexplained: usize) -> RigidParts {
     }
 }
 
+/// What these sensors feel at so many samples, beyond what they read at rest.
+fn felt(rest: f32, samples: usize) -> Recording {
+    let pressures = (0..12 * samples).map(|at| rest + (at % 7) as f32).collect();
+    Recording::new(Tactile { samples, pressures })
+}
+
 /// The verdict on a recording of these sensors.
 fn explained(recording: &Recording, novelty: f64) -> Fit {
     Fit::new(&one_part(0), recording, novelty, novelty < SIMILAR)
@@ -30,18 +36,14 @@ fn explained(recording: &Recording, novelty: f64) -> Fit {
 
 #[test]
 fn whatever_is_explained_a_short_recording_is_doubtful_and_one_that_repeats_or_has_an_offset_does_not_fit() {
-    let with_rest = |rest: f32, samples: usize, novelty: f64| {
-        let pressures = (0..12 * samples).map(|at| rest + (at % 7) as f32).collect();
-        explained(&Recording::new(Tactile { samples, pressures }), novelty)
-    };
+    let with_rest = |rest: f32, samples: usize, novelty: f64| explained(&felt(rest, samples), novelty);
     let fit = |samples: usize, novelty: f64| with_rest(0.0, samples, novelty);
     assert_eq!(fit(SHORT, 0.1).verdict, Verdict::Good);
     assert_eq!((fit(SHORT, 1e-4).verdict, fit(SHORT, 1e-4).cause), (Verdict::DoesNotFit, Some(REPETITION)));
     let similar = fit(SHORT, 0.01);
     assert_eq!((similar.verdict, similar.cause), (Verdict::Doubtful, Some(SIMILARITY)));
     // A loop of many motions, as a walk that was recorded once and repeated.
-    let pressures = (0..12 * SHORT).map(|at| (at % 7) as f32).collect();
-    let looped = Fit::new(&one_part(0), &Recording::new(Tactile { samples: SHORT, pressures }), 1e-4, false);
+    let looped = Fit::new(&one_part(0), &felt(0.0, SHORT), 1e-4, false);
     assert_eq!((looped.verdict, looped.cause), (Verdict::Doubtful, Some(LOOPED)));
     let short = fit(SHORT - 1, 0.1);
     assert_eq!((short.verdict, short.explained), (Verdict::Doubtful, 1.0));
@@ -55,8 +57,7 @@ fn whatever_is_explained_a_short_recording_is_doubtful_and_one_that_repeats_or_h
 
 #[test]
 fn the_fewer_sensors_are_explained_the_worse_is_the_verdict() {
-    let pressures = (0..12 * SHORT).map(|at| (at % 7) as f32).collect();
-    let recording = Recording::new(Tactile { samples: SHORT, pressures });
+    let recording = felt(0.0, SHORT);
     let verdict = |unexplained: usize| Fit::new(&one_part(unexplained), &recording, 0.5, false).verdict;
     // 92 %, 83 % and 75 % of 12 sensors.
     let found = [1, 2, 3].map(verdict);
@@ -66,7 +67,7 @@ fn the_fewer_sensors_are_explained_the_worse_is_the_verdict() {
 #[test]
 fn where_few_sensors_feel_something_at_a_time_it_does_not_fit_unless_noise_tells_no_more() {
     // One sensor after the other, or every other one.
-    let felt = |apart: usize, levels: usize| {
+    let touched = |apart: usize, levels: usize| {
         let pressure = |at: usize| {
             let (sensor, t) = (at / SHORT, at % SHORT);
             if (t + sensor).is_multiple_of(apart) { 1.0 + (t % levels) as f32 } else { 0.0 }
@@ -75,14 +76,14 @@ fn where_few_sensors_feel_something_at_a_time_it_does_not_fit_unless_noise_tells
     };
     let verdict =
         |recording: &Recording| (explained(recording, 0.5).verdict, explained(recording, 0.5).cause);
-    assert_eq!(verdict(&felt(2, 97)), (Verdict::Good, None));
-    assert_eq!(verdict(&felt(12, 97)), (Verdict::DoesNotFit, Some(STROKES)));
-    let pads = verdict(&felt(12, 1));
+    assert_eq!(verdict(&touched(2, 97)), (Verdict::Good, None));
+    assert_eq!(verdict(&touched(12, 97)), (Verdict::DoesNotFit, Some(STROKES)));
+    let pads = verdict(&touched(12, 1));
     assert!(
         pads.0 == Verdict::DoesNotFit && pads.1.unwrap().starts_with("most sensors have a few levels only"),
         "{pads:?}"
     );
-    assert_eq!(verdict(&Recording { noisy: 12, ..felt(12, 97) }), (Verdict::Good, None));
+    assert_eq!(verdict(&Recording { noisy: 12, ..touched(12, 97) }), (Verdict::Good, None));
 }
 
 /// What two parts of 20 sensors feel that move independently, with three numbers of motion each.

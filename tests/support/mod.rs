@@ -4,6 +4,7 @@
 
 pub mod bounded;
 pub mod browser;
+pub mod estimated;
 pub mod folder;
 pub mod names;
 pub mod repository;

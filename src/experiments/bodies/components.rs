@@ -5,6 +5,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use crate::stages::joints::of_correlation;
 use crate::stages::rigid_parts::stratified;
 use crate::stages::sense::Tactile;
 use crate::stages::tree::{Edge, prim};
@@ -60,11 +61,7 @@ fn leading(mut roots: DMatrix<f64>) -> DMatrix<f64> {
 
 /// Of two Gaussian variables whose components have these correlations, nats: the sum of −½ ln(1 − ρ²) over their canonical correlations ρ.
 fn mutual_information(correlations: &DMatrix<f64>) -> f64 {
-    let canonical = correlations.singular_values();
-    canonical
-        .iter()
-        .map(|r| -0.5 * ((1.0 - f64::min(r * r, 1.0) + NEGLIGIBLE) / (1.0 + NEGLIGIBLE)).ln())
-        .sum()
+    correlations.singular_values().iter().map(|r| of_correlation(*r, NEGLIGIBLE)).sum()
 }
 
 #[cfg(test)]

@@ -10,7 +10,7 @@ use nalgebra::DMatrix;
 use rayon::prelude::*;
 
 use super::cross_moments::{CrossMoments, Extended};
-use super::information::of_speeds;
+use super::information::of_correlation;
 use super::tree::maximum_spanning_tree;
 use crate::stages::parameters::Parameters;
 use crate::stages::rigid_parts::MotionSubspace;
@@ -24,7 +24,7 @@ const MAX_SWEEPS: usize = 3;
 /// speeds, in nats; 0 if there is nothing to assign.
 ///
 /// `pairs` are clusters that may be the two ends of one part, which gain most together. Greedily, the cluster or pair by which
-/// the tree gains most information is assigned, as long as that is more than `min_gain`. Then each is tried on the other parts.
+/// the tree gains most information is assigned, as long as that is more than `min_assignment_gain`. Then each is tried on the other parts.
 pub(super) fn assign(
     parts: &[MotionSubspace],
     unassigned: &[MotionSubspace],
@@ -149,7 +149,7 @@ impl<'a> Assignment<'a> {
     fn information_of(&self, correlations: &DMatrix<f64>) -> f64 {
         let least = self.moments.parameters.min_unexplained;
         let edges = maximum_spanning_tree(correlations);
-        edges.iter().map(|edge| of_speeds(correlations[(edge.child, edge.parent)], least)).sum()
+        edges.iter().map(|edge| of_correlation(correlations[(edge.child, edge.parent)], least)).sum()
     }
 
     /// The information of the tree with a trial.

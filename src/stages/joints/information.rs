@@ -16,18 +16,18 @@ use nalgebra::DMatrix;
 use super::correlation::{Common, factor_with_ridge, whitened};
 use crate::stages::parameters::Parameters;
 
-/// Of squared joint speeds of this correlation, 0 to 1: −½ ln(1 − r²), but for a share that is `negligible`; 0 if they have nothing in common.
-pub(super) fn of_speeds(correlation: f64, negligible: f64) -> f64 {
+/// Of two variables of this correlation, 0 to 1, such as the squared speeds of a joint: −½ ln(1 − r²), but for a share that is `negligible`; 0 if they have nothing in common.
+pub(crate) fn of_correlation(correlation: f64, negligible: f64) -> f64 {
     -0.5 * ((1.0 - correlation * correlation + negligible) / (1.0 + negligible)).ln()
 }
 
 /// Of a joint, from what the quadratic forms of the motions of its parts have in common over so many samples, and their linear mutual
 /// information, nats.
 pub(super) fn of_joint(common: &Common, linear: f64, samples: usize, parameters: &Parameters) -> f64 {
-    let of_speeds = |correlation| of_speeds(correlation, parameters.min_unexplained);
-    let quadratic: f64 = common.canonical.iter().copied().map(of_speeds).sum();
+    let of_correlation = |correlation| of_correlation(correlation, parameters.min_unexplained);
+    let quadratic: f64 = common.canonical.iter().copied().map(of_correlation).sum();
     let weight = samples as f64 / (samples as f64 + parameters.half_weight_samples);
-    of_speeds(common.correlation) + weight * (linear + quadratic)
+    of_correlation(common.correlation) + weight * (linear + quadratic)
 }
 
 /// The motion of a part as a Gaussian variable about 0.

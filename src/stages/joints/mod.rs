@@ -20,6 +20,7 @@ mod moments;
 mod refine;
 mod tree;
 
+pub(crate) use self::information::of_correlation;
 pub(crate) use self::refine::{refine, refine_tree};
 pub use self::tree::{Joints, Pair, joints};
 pub(crate) use self::tree::{blocks, joint_tree};

@@ -57,6 +57,6 @@ fn equal_motions_tell_a_finite_amount_and_no_motion_tells_nothing() {
 
 #[test]
 fn more_of_a_joints_speed_tells_more() {
-    let found: Vec<f64> = [0.0, 0.5, 0.99, 1.0].map(|correlation| of_speeds(correlation, 1e-3)).to_vec();
+    let found: Vec<f64> = [0.0, 0.5, 0.99, 1.0].map(|correlation| of_correlation(correlation, 1e-3)).to_vec();
     assert!(found.is_sorted() && found[0] == 0.0 && found[3] < 3.5, "{found:?}");
 }
