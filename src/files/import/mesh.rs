@@ -9,7 +9,7 @@ use std::f64::consts::PI;
 use std::path::Path;
 
 use nalgebra::{
-    Isometry3, Matrix3, Rotation3, SymmetricEigen, Translation3, UnitQuaternion, Vector3 as Column,
+    Isometry3, Matrix3, Matrix4, Rotation3, SymmetricEigen, Translation3, UnitQuaternion, Vector3 as Column,
 };
 
 use super::document::Wrong;
@@ -63,6 +63,11 @@ pub(super) fn principal(matrix: Matrix3<f64>) -> (UnitQuaternion<f64>, Vector3) 
 /// Twice the area of a triangle, times its normal.
 fn normal([a, b, c]: &[Column<f64>; 3]) -> Column<f64> {
     (b - a).cross(&(c - a))
+}
+
+/// Whether what is placed so is a mirror image. Its triangles must then be turned round, so that they look outward.
+fn is_mirrored(place: &Matrix4<f64>) -> bool {
+    place.fixed_view::<3, 3>(0, 0).determinant() < 0.0
 }
 
 impl Mesh {

@@ -11,7 +11,7 @@ use base64::engine::general_purpose::STANDARD;
 use nalgebra::{Matrix4, Quaternion, UnitQuaternion, Vector3 as Column};
 use serde::Deserialize;
 
-use super::{MOST_TRIANGLES, too_many};
+use super::{MOST_TRIANGLES, is_mirrored, too_many};
 use crate::files::import::document::Wrong;
 
 /// Types of numbers in buffers.
@@ -222,8 +222,7 @@ impl Reader<'_> {
     /// Adds the triangles of a mesh at a place.
     fn add(&mut self, mesh: usize, place: &Matrix4<f64>) -> Result<(), Wrong> {
         let mesh = self.document.meshes.get(mesh).ok_or("has a node with a mesh that is not there")?;
-        // A mirror image looks inward; its corners then go round clockwise.
-        let is_mirrored = place.fixed_view::<3, 3>(0, 0).determinant() < 0.0;
+        let is_mirrored = is_mirrored(place);
         let mut new = Vec::new();
         for primitive in &mesh.primitives {
             let mode = primitive.mode.unwrap_or(TRIANGLES);

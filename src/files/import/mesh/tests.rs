@@ -207,21 +207,40 @@ fn damaged_files_give_a_mesh_or_a_line() {
     assert!(read(&folder.path().join("b.stl")).unwrap_err().contains("cannot be read"));
 }
 
+/// The mesh of the COLLADA file with pieces of its text replaced.
+fn read_with(folder: &Path, pieces: &[(&str, &str)]) -> Result<Mesh, Wrong> {
+    let path = written(folder).into_iter().find(|path| path.ends_with("t.dae")).unwrap();
+    let mut text = std::fs::read_to_string(path).unwrap();
+    for (from, to) in pieces {
+        assert!(text.contains(from));
+        text = text.replace(from, to);
+    }
+    std::fs::write(folder.join("m.dae"), text).unwrap();
+    read(&folder.join("m.dae"))
+}
+
 #[test]
 fn what_would_not_end_is_refused() {
     let folder = tempfile::tempdir().unwrap();
-    let path = written(folder.path()).into_iter().find(|path| path.ends_with("t.dae")).unwrap();
-    let text = std::fs::read_to_string(path).unwrap();
-    let read_as = |from: &str, to: &str| {
-        assert!(text.contains(from));
-        std::fs::write(folder.path().join("m.dae"), text.replace(from, to)).unwrap();
-        read(&folder.path().join("m.dae"))
-    };
+    let read_as = |from: &str, to: &str| read_with(folder.path(), &[(from, to)]);
     assert!(read_as("offset=\"0\"", "offset=\"18446744073709551615\"").unwrap_err().contains("no triangle"));
     let twice = "<instance_node url=\"#n\"/><instance_node url=\"#n\"/>";
     let wrong = read_as("<instance_geometry url=\"#g\"/>", twice).unwrap_err();
     assert!(wrong.contains("nodes within each other"), "{wrong}");
     assert!(read_as("</node>", &format!("{}</node>", "<instance_geometry url=\"#g\"/>".repeat(9))).is_ok());
+}
+
+/// As wheels and legs are drawn: one, and the other one as its mirror image.
+#[test]
+fn mirror_images_in_a_collada_look_outward_too() {
+    let folder = tempfile::tempdir().unwrap();
+    let shown = "<instance_geometry url=\"#g\"/>";
+    let both = format!("{shown}<scale>-1 1 1</scale>{shown}");
+    let strip = [("triangles", "tristrips"), ("0 2 1 0 1 3 0 3 2 1 2 3", "0 2 1 3 0 2")];
+    for kind in [&strip[..0], &strip] {
+        let mesh = read_with(folder.path(), &[&[(shown, &*both)], kind].concat()).unwrap();
+        assert!((mesh.signed_volume() - 2.0).abs() < 1e-6, "{kind:?}: {}", mesh.signed_volume());
+    }
 }
 
 #[test]
