@@ -23,6 +23,8 @@ STAGES = [
     ("stages/joints", "The tree"),
     ("estimate", "The fit, and repeats"),
 ]
+# What is said of a number that is no decision.
+UNSEEN = "changes no result"
 INFLUENCE = PAGE.parent / "influence.csv"
 SETTABLE = ROOT / "src" / "stages" / "parameters.rs"
 PARAMETER = re.compile(r"((?:^ +///[^\n]*\n)+)^ +([a-z_]+): (?:f64|usize) = ([^,\n]+),", re.M)
@@ -47,11 +49,14 @@ def page():
     lines = [
         "# The parameters of `estimate`",
         "",
-        f"The code of `bodyschema estimate` has {count} numbers. Most decide, or bound, what it finds; a few only bound its time and memory. They",
-        "were chosen on calibration data ([seeds.toml](../../../reproduce/seeds.toml)). How each step uses them is in",
-        f"[estimate.md](../../estimate.md). {len(can_be_set)} are parameters that can be changed, to a hundredth to a hundred times the default:",
-        "`estimate --parameter NAME=VALUE`, and in Python `estimate(touch, parameters={...})`. All others are constants, which were not",
-        "varied. Made by `reproduce/constants.py` from the code.",
+        f"{count} names stand for numbers in the code of `bodyschema estimate`; some have two to four values. Most decide, or bound, what it",
+        "finds; some only bound its time and memory. They were chosen on calibration data",
+        "([seeds.toml](../../../reproduce/seeds.toml)). How each step uses them is in [estimate.md](../../estimate.md). Not counted are names",
+        "that follow from others, and those that change no result.",
+        "",
+        f"{len(can_be_set)} of them are parameters, which can be changed from 1/100 to 100 times the default: `estimate --parameter NAME=VALUE`, and in",
+        "Python `estimate(touch, parameters={...})`. All others are constants, which were not varied. Made by `reproduce/constants.py` from the",
+        "code.",
         "",
         "## Parameters",
         "",
@@ -135,7 +140,8 @@ def numbers(stage):
             # Two together have one comment.
             last = said or (last if found.start() == end + 1 else "")
             end = found.end()
-            if "&str" not in kind:
+            is_derived = re.search("[A-Z]{2,}", value)
+            if "&str" not in kind and not is_derived and UNSEEN not in said.lower():
                 rows.append((file.relative_to(ROOT), name, value, last))
     return rows
 

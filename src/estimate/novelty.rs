@@ -20,9 +20,10 @@ const REST: f64 = 0.1;
 const SAME: f64 = 0.5;
 /// The same of the least alike sample from which on a state has been left.
 const LEFT: f64 = 0.9;
-/// A movement consists of few motions if so many principal components explain this share of what sensors feel, each in units of its own.
-/// In one rhythm, 15 components did so at most (15 bodies of 3 to 13 parts), and in a walk that was looped 55.
+/// A movement consists of few motions if at most so many principal components are enough. In one rhythm, 15 were at most (15 bodies of 3 to
+/// 13 parts), and in a walk that was looped 55.
 const FEW: usize = 30;
+/// Share of what sensors feel, each in units of its own, that principal components must explain to be enough.
 const EXPLAINED: f64 = 0.99;
 
 /// The median, over samples, of the share of what is felt that the most similar sample leaves: 0 if every state comes again exactly, and 1

@@ -26,7 +26,7 @@ mod smooth_gaps;
 
 use rayon::prelude::*;
 
-use self::shared::Signs;
+use self::shared::{MIN_DIFFERENCES, SHARED, Signs};
 use self::smooth::smooth;
 use self::smooth_gaps::smooth_gaps;
 use crate::stages::sense::Tactile;
@@ -35,12 +35,10 @@ use crate::stages::sense::Tactile;
 const MAX_MEDIAN_TO_QUARTILE: f64 = 4.0;
 /// The least share of the differences that are other than 0, if it is noise.
 const MIN_NONZERO_SHARE: f64 = 0.75;
-/// How far the share of equal signs may lie from a half.
-const MAX_SIGN_IMBALANCE: f64 = 0.2;
+/// How far the share of equal signs may lie from a half: the mean product of signs is twice as much.
+const MAX_SIGN_IMBALANCE: f64 = SHARED / 2.0;
 /// Noise seldom exceeds so many times its median absolute second difference.
 const NOISE_LIMIT: f32 = 4.0;
-/// Fewer second differences than these tell nothing of noise.
-const MIN_DIFFERENCES: usize = 100;
 /// A sensor of which fewer than one sample in so many exceeds its noise has levels, such as on and off, and no noise.
 const MIN_SIGNAL_ONE_IN: usize = 1000;
 
@@ -78,7 +76,7 @@ fn size(series: &[f32]) -> Option<f32> {
     let known = differences.iter().filter(|difference| !difference.is_nan()).count();
     let mut sizes: Vec<f32> =
         differences.iter().map(|difference| difference.abs()).filter(|size| *size > 0.0).collect();
-    if sizes.len() < MIN_DIFFERENCES || (sizes.len() as f64) < MIN_NONZERO_SHARE * known as f64 {
+    if sizes.len() < MIN_DIFFERENCES as usize || (sizes.len() as f64) < MIN_NONZERO_SHARE * known as f64 {
         return None;
     }
     let (pairs, alike) = differences

@@ -113,10 +113,10 @@ parameters! {
     min_affinity: f64 = 0.1,
     /// Largest residual variance of a seed cluster, in units of the tolerance.
     max_seed_residual: f64 = 10.0,
-    /// The least tolerance of the search, the residual variance that is encoded as noise is: what the iterations leave. A separation, which
-    /// iterates longer, goes below.
+    /// Least tolerance of the search. The tolerance is the residual variance that is encoded as noise. The least one is what the iterations
+    /// leave in exact data. A separation, which iterates longer, goes below.
     min_tolerance: f64 = 3e-4,
-    /// The largest tolerance of the search.
+    /// Largest tolerance of the search.
     max_tolerance: f64 = 5e-2,
     /// Clusters of highest affinity that a cluster may merge with.
     neighbours: usize = 5,

@@ -14,7 +14,7 @@ use super::tree::{Joints, tree_of_motions};
 use crate::numerics::partition::{named_by_appearance, sizes};
 use crate::stages::parameters::Parameters;
 use crate::stages::rigid_parts::{
-    MotionSubspace, RigidParts, Roots, opposite_pairs, similar, stratified, typical_size,
+    MAX_RANK, MotionSubspace, RigidParts, Roots, opposite_pairs, similar, stratified, typical_size,
 };
 use crate::stages::sense::Tactile;
 use crate::stages::tree::Edge;
@@ -22,7 +22,7 @@ use crate::stages::tree::Edge;
 /// Samples that similarity is computed from, spread over all.
 const MAX_SAMPLES: usize = 2000;
 /// Rank from which on a part is no piece of another: a cylinder feels its motion but its spin.
-const WHOLE_RANK: usize = 5;
+const WHOLE_RANK: usize = MAX_RANK - 1;
 /// Unassigned clusters that are tried on parts, the largest: memory grows with the square of their number.
 const MAX_CLUSTERS: usize = 40;
 

@@ -13,9 +13,9 @@ use crate::stages::rigid_parts::{MAX_RANK, MotionSubspace, motions_of_parts};
 use crate::stages::sense::Tactile;
 use crate::stages::tree::{Edge, prim};
 
-/// Most blocks of samples that are drawn with replacement, and the fewest samples of a block: longer than speeds are correlated in time. Only
-/// recordings of fewer than 200 samples have shorter blocks.
+/// Most blocks of samples that are drawn with replacement.
 const BLOCKS: usize = 50;
+/// Fewest samples of a block: longer than speeds are correlated in time. Only recordings of fewer than 200 samples have shorter blocks.
 const BLOCK_SAMPLES: usize = 100;
 /// Number of trees over resampled blocks.
 const RESAMPLES: usize = 400;

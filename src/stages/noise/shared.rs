@@ -9,9 +9,9 @@ use crate::stages::sense::Tactile;
 
 /// Mean product of two sensors' signs from which on they are shared. That of independent noise is 0 but for chance: a standard
 /// deviation of 0.1 for the fewest samples.
-const SHARED: f64 = 0.4;
-/// Samples that two sensors are compared at, where both have second differences other than 0, at least.
-const MIN_SAMPLES: u32 = 100;
+pub(super) const SHARED: f64 = 0.4;
+/// Second differences other than 0 that a sensor, and two that are compared, must have: fewer tell nothing of noise.
+pub(super) const MIN_DIFFERENCES: u32 = 100;
 /// Samples that are looked at, from the first on.
 const MAX_SAMPLES: usize = 20_000;
 
@@ -49,6 +49,6 @@ impl Signs {
             alike += (both & !(self.above[at] ^ other.above[at])).count_ones();
         }
         let mean = 2.0 * f64::from(alike) / f64::from(count.max(1)) - 1.0;
-        count >= MIN_SAMPLES && mean.abs() >= SHARED
+        count >= MIN_DIFFERENCES && mean.abs() >= SHARED
     }
 }

@@ -14,7 +14,7 @@ use crate::numerics::interrupt;
 mod series;
 mod sums;
 
-/// Samples whose motion stays in the fastest memory while it is summed for one sensor after the other.
+/// Samples whose motion stays in the fastest memory while it is summed for one sensor after the other. It changes no result.
 const BLOCK: usize = 256;
 
 /// Runs work that is compiled for each rank of a motion subspace. At rank 0, gives the default value.

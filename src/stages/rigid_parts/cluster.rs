@@ -19,13 +19,18 @@ use crate::stages::parameters::Parameters;
 
 /// Sensors of a cluster that its motion is learned from, spread over all.
 pub(super) const MAX_SENSORS: usize = 48;
-/// Iterations in which the motion of a cluster is learned, and more where it is in doubt whether one motion explains it.
+/// Sensors of a group that are tried with a cluster, and of the cluster that they are tried with. They are as many, so that neither decides
+/// alone what the motion is, and together so few that it is learned from all.
+pub(super) const MAX_GROUP: usize = MAX_SENSORS / 2;
+/// Iterations in which the motion of a cluster is learned; and more where it is in doubt whether one motion explains it, or with one component
+/// more.
 pub(super) const ITERATIONS: [usize; 2] = [8, 24];
-/// Iterations in which c of other sensors is found from given w: where completed roots start it, and from nothing. A sensor that feels
+/// Iterations in which c of other sensors is found from given w: where completed roots start it, and at most from nothing. A sensor that feels
 /// something at few samples takes the most.
 const LOADING_ITERATIONS: [usize; 2] = [2, 30];
-/// Momentum of these iterations: the least and the largest, and its factors while the residual falls and when it grew.
+/// Momentum of these iterations: the least and the largest.
 const MOMENTUM: [f64; 2] = [0.5, 0.98];
+/// Its factors while the residual falls, and when it grew.
 const PACE: [f64; 2] = [1.1, 0.5];
 /// Residual variance at which more iterations say nothing new.
 pub(super) const ROUNDING: f64 = 1e-11;
@@ -45,7 +50,8 @@ pub(super) struct Felt {
     pub sizes: Vec<f64>,
     /// Residual variance that is encoded as noise is.
     pub tolerance: f64,
-    /// Iterations in which the motion of a cluster is learned, and more where it is in doubt whether one motion explains it.
+    /// Iterations in which the motion of a cluster is learned; and more where it is in doubt whether one motion explains it, or with one component
+    /// more.
     pub iterations: [usize; 2],
     /// The parameters of the search.
     pub parameters: Parameters,

@@ -16,7 +16,7 @@ use crate::numerics::interrupt;
 /// Largest rank. More than the motions of a body have does no harm.
 const MAX_RANK: usize = 100;
 /// Sensors, and samples, for each unit of rank at least: with fewer, anything fits.
-const MIN_PER_RANK: usize = 4;
+pub(super) const MIN_PER_RANK: usize = 4;
 /// Iterations.
 const ITERATIONS: usize = 200;
 /// Momentum: the first, the largest, and the least.

@@ -4,18 +4,13 @@
 
 use rayon::prelude::*;
 
-use super::cluster::{Cluster, MAX_SENSORS, ROUNDING};
-use super::search::Search;
+use super::cluster::{Cluster, MAX_GROUP, ROUNDING};
+use super::search::{MIN_GROUP, Search};
 use super::separation::{MAX_ROUNDS, best_part};
 use super::stratified::stratified;
 
 /// How many times more a cluster may leave with more sensors than without. A sensor of another part adds more.
 const MORE: f64 = 1000.0;
-/// Sensors that a cluster may grow by at once, and those of the cluster that are learned with them: so many that the motion is learned
-/// from all, since a sensor that it is not learned from has no residual.
-const MAX_GROUP: usize = MAX_SENSORS / 2;
-/// Fewest sensors that a cluster grows by if it did not explain them before. Any cluster of less than six motions explains one.
-const MIN_GROUP: usize = 2;
 
 impl Search {
     /// Settled clusters with the sensors of no settled one that they explain: those that each fit, and those that fit only together.

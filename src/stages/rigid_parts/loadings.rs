@@ -3,16 +3,17 @@
 use faer::Mat;
 use nalgebra::DMatrix;
 
+use super::regressions::RIDGE;
 use super::roots::product;
 use crate::numerics::eigen::largest;
 
 /// c of the same c · w, for which the components of w are uncorrelated, and each has a variance of 1.
 pub(super) fn whitened(loadings: &Mat<f64>, motion: &Mat<f64>) -> Mat<f64> {
-    /// Of the mean square of w.
-    const RIDGE: f64 = 1e-12;
+    /// Variance that is added to each component of w, as a share of the sum of all: it only gives the matrix a factor.
+    const LEAST: f64 = 1e-12;
     let k = loadings.ncols();
     let scatter = product(motion.transpose(), motion.as_ref());
-    let ridge = f64::MIN_POSITIVE + RIDGE * (0..k).map(|at| scatter[(at, at)]).sum::<f64>();
+    let ridge = f64::MIN_POSITIVE + LEAST * (0..k).map(|at| scatter[(at, at)]).sum::<f64>();
     let covariance = DMatrix::from_fn(k, k, |i, j| {
         (scatter[(i.max(j), i.min(j))] + if i == j { ridge } else { 0.0 }) / motion.nrows() as f64
     });
@@ -39,8 +40,6 @@ pub(super) fn components(whitened: &Mat<f64>) -> Vec<f64> {
 
 /// X of X A = B for a symmetric A, k × k, with a ridge.
 pub(super) fn solved(squares: &Mat<f64>, products: &Mat<f64>) -> Mat<f64> {
-    /// As a share of the mean square.
-    const RIDGE: f64 = 1e-7;
     let k = squares.nrows();
     let trace: f64 = (0..k).map(|at| squares[(at, at)]).sum();
     let ridge = RIDGE * trace / k as f64 + f64::MIN_POSITIVE;

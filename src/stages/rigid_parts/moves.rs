@@ -6,15 +6,9 @@
 
 use rayon::prelude::*;
 
-use super::cluster::Cluster;
-use super::search::{MIN_CLUSTER, PIECE, SEED_SENSORS, Search};
+use super::cluster::{Cluster, MAX_GROUP};
+use super::search::{MIN_CLUSTER, MIN_GROUP, PIECE, SEED_SENSORS, Search};
 use super::stratified::stratified;
-
-/// Fewest sensors of a group. A single one that is in a cluster by mistake spans a component alone.
-const MIN_GROUP: usize = 2;
-/// Sensors of a group that are tried, and of a cluster that they are tried with. They are as many, so that neither decides alone what
-/// the motion is.
-const MAX_TRIED: usize = 24;
 
 /// Where a group costs less than in its cluster.
 enum Place {
@@ -167,7 +161,7 @@ impl Search {
 
 /// Sensors that stand for others in a trial, spread over all of them.
 pub(super) fn tried_of(sensors: &[usize]) -> Vec<usize> {
-    stratified(sensors.len(), MAX_TRIED).map(|at| sensors[at]).collect()
+    stratified(sensors.len(), MAX_GROUP).map(|at| sensors[at]).collect()
 }
 
 #[cfg(test)]

@@ -10,6 +10,7 @@ use rayon::prelude::*;
 
 use super::cluster::Cluster;
 use super::cluster::evidence::Evidence;
+use super::completion::MIN_PER_RANK;
 use super::faces::similar;
 use super::factorisation::MAX_RANK;
 use super::medians::typical_size;
@@ -22,8 +23,8 @@ use crate::numerics::partition::named_by_appearance;
 use crate::stages::parameters::Parameters;
 use crate::stages::sense::Tactile;
 
-/// Samples at which a sensor must feel something to be searched for: four for each of the six numbers of its c.
-pub(super) const MIN_FELT: usize = 4 * MAX_RANK;
+/// Samples at which a sensor must feel something to be searched for, for all six numbers of its c.
+pub(super) const MIN_FELT: usize = MIN_PER_RANK * MAX_RANK;
 /// The part of each of M sensors, and how well its motion explains what the sensor feels.
 ///
 /// A residual is the share of the mean square of a sensor's roots that the motion of a part leaves unexplained: 0 if it explains

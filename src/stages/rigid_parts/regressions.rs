@@ -3,8 +3,8 @@
 use crate::numerics::simd::vectorised;
 
 /// Ridge, as a share of the mean square of the regressors: it decides where a regression is underdetermined.
-const RIDGE: f64 = 1e-7;
-/// Regressions that are solved at once, one in each lane.
+pub(super) const RIDGE: f64 = 1e-7;
+/// Regressions that are solved at once, one in each lane. It changes no result.
 pub(super) const LANES: usize = 32;
 /// One number of each regression.
 type Lanes = [f64; LANES];

@@ -15,15 +15,14 @@ use rayon::prelude::*;
 
 use super::cluster::Cluster;
 use super::face_growth::Faces;
-use super::search::{SEED_SENSORS, Search, smallest};
+use super::search::{MIN_GROUP, SEED_SENSORS, Search, smallest};
 use super::stratified::stratified;
+use super::subspace::ROTATION_RANK;
 
 /// What all sensors of a flat face feel: this many numbers.
-const FACE_RANK: usize = 3;
+const FACE_RANK: usize = ROTATION_RANK;
 /// Fewest sensors of a flat face. Any three span a subspace; only more than three tell a face.
 const MIN_FACE: usize = 5;
-/// Fewest sensors that are a group of their own if they are on no flat face.
-const MIN_REST: usize = 2;
 /// Sensors of a cluster whose triples are tried as what spans a face.
 const MAX_TRIED: usize = 20;
 
@@ -79,7 +78,7 @@ impl Search {
             let best = smallest(residuals.iter().map(|of| of[at])).filter(|(_, least)| *least <= most);
             faces[best.map_or(flats.len(), |(flat, _)| flat)].push(sensor);
         }
-        faces.retain(|face| face.len() >= MIN_REST);
+        faces.retain(|face| face.len() >= MIN_GROUP);
         faces
     }
 }

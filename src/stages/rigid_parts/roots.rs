@@ -103,7 +103,7 @@ impl Roots {
 
     /// The root mean square of the roots at each sample, but no less than a tenth of the median.
     pub(super) fn sizes(&self) -> Vec<f64> {
-        /// Of the median.
+        /// Size that a sample counts as at least, as a share of the median size.
         const LEAST: f64 = 0.1;
         let mut sums = vec![(0.0, 0); self.samples()];
         for sensor in 0..self.sensors() {

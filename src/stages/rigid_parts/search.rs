@@ -21,6 +21,9 @@ pub const MIN_SENSORS: usize = 2 * SEED_SENSORS[0];
 pub(super) const PIECE: f64 = 0.6;
 /// Fewest sensors of a cluster.
 pub(super) const MIN_CLUSTER: usize = 4;
+/// Fewest sensors of a group that moves, joins a cluster, or is a face. A single one may be in a cluster by mistake, and any cluster of less
+/// than six motions explains one.
+pub(super) const MIN_GROUP: usize = 2;
 /// Most iterations in which sensors are assigned, and of merging and assigning.
 const MAX_ASSIGNMENTS: usize = 3;
 const MAX_ALTERNATIONS: usize = 4;

@@ -85,7 +85,7 @@ impl MotionSubspace {
 
     /// Of rank k, where `motion` gives w at some samples.
     fn from_roots(series: &[&[f32]], k: usize, motion: &(dyn Fn(&[usize]) -> Vec<f64> + Sync)) -> Self {
-        /// Samples whose roots are in memory at once.
+        /// Samples whose roots are in memory at once. It changes no result.
         const BLOCK: usize = 240;
         let samples = series.first().map_or(0, |series| series.len());
         let has_gaps = series.par_iter().any(|series| series.iter().any(|pressure| pressure.is_nan()));

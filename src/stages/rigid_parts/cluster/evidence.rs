@@ -7,10 +7,8 @@
 
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
-use super::Cluster;
+use super::{Cluster, LOADING_ITERATIONS};
 
-/// Most iterations in which c is found; each updates which samples are informative.
-const ITERATIONS: usize = 30;
 /// Least variance of c in any direction, as a share of the mean one.
 const RIDGE: f64 = 1e-6;
 
@@ -55,7 +53,8 @@ impl Evidence {
         let mut c = DVector::zeros(self.motion.nrows());
         let mut informative = Vec::new();
         let mut found = None;
-        for _ in 0..ITERATIONS {
+        // Each updates which samples are informative.
+        for _ in 0..LOADING_ITERATIONS[1] {
             let counts = |t: &usize| is_felt(*t) || w(*t).dot(&c) > roots[*t];
             let now: Vec<usize> = (0..roots.len()).filter(counts).collect();
             if found.is_some() && now == informative {

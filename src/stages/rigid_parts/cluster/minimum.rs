@@ -6,10 +6,7 @@
 
 use faer::Mat;
 
-use super::{Cluster, Felt, principal_motion};
-
-/// Iterations with one component more.
-const ITERATIONS: usize = 24;
+use super::{Cluster, Felt, ITERATIONS, principal_motion};
 
 impl Cluster {
     /// Takes the motion that is learned by a component more, if it leaves less. With too few sensors for that, it stays.
@@ -20,7 +17,7 @@ impl Cluster {
         }
         let mut other = self.clone();
         other.completed = self.as_felt(felt);
-        for (rank, iterations) in [(rank + 1, ITERATIONS), (rank, felt.iterations[1])] {
+        for (rank, iterations) in [(rank + 1, ITERATIONS[1]), (rank, felt.iterations[1])] {
             (other.loadings, other.motion) = principal_motion(&other.completed, rank);
             other.learn(felt, iterations, felt.weights()[1]);
         }
