@@ -32,6 +32,7 @@
 //! # }
 //! ```
 
+mod doubts;
 mod novelty;
 mod offset;
 mod repeats;
@@ -41,9 +42,12 @@ use std::fmt;
 
 use rand::Rng;
 
+pub use self::doubts::{Doubt, SURE};
+use self::doubts::{ENOUGH_SENSORS, doubts};
 use self::offset::has_offset;
 pub use self::repeats::{Repeats, repeats};
 use self::strokes::few_at_a_time;
+use crate::numerics::partition::sizes;
 use crate::recording::Recording;
 use crate::stages::distance::{Distances, information_metric};
 use crate::stages::joints::{Joints, refine};
@@ -60,9 +64,11 @@ const MAX_SAMPLES: usize = 20_000;
 /// Largest residual at which the motion of its part explains a sensor, as a share of the mean square of the sensor's roots: where few
 /// sensors are noisy, and where most are.
 const MAX_RESIDUAL: [f64; 2] = [0.05, 0.2];
-/// Shares of sensors that are explained from which on rigid parts fit a recording, and may fit it. On calibration data it was at least
-/// 0.90 where they fit, and at most 0.71 where sensors were read at different times (docs/estimate.md).
+/// Share of explained sensors from which on the fit is good. On calibration data it was at least 0.90 where rigid parts fit
+/// (docs/estimate.md).
 const GOOD: f64 = 0.9;
+/// Share of explained sensors from which on the fit is doubtful. On calibration data it was at most 0.71 where sensors were read at different
+/// times (docs/estimate.md).
 const DOUBTFUL: f64 = 0.8;
 /// Different values up to which a sensor has levels, such as on and off.
 const LEVELS: usize = 8;
@@ -84,7 +90,7 @@ pub enum Verdict {
     /// itself in one rhythm, or few sensors feel something at a time (not tested where most sensors are noisy).
     DoesNotFit,
     /// Rigid parts explain at least 90 % of the sensors, over 1,000 samples or more, and the movement neither repeats itself nor comes back
-    /// to similar states.
+    /// to similar states. There are two parts or more, of 16 sensors or more each.
     Good,
     /// All else.
     Doubtful,
@@ -116,26 +122,23 @@ pub struct Fit {
 }
 
 impl Fit {
-    /// Of parts before joints assign the sensors that no part explains. `comes_back`: whether the movement
-    /// consists of few motions, and comes back to similar states.
-    fn new(parts: &RigidParts, recording: &Recording, novelty: f64, comes_back: bool) -> Self {
-        let is_noisy = 2 * recording.noisy > recording.sensors.len();
-        let most = MAX_RESIDUAL[usize::from(is_noisy)];
-        let own = parts.labels.iter().zip(&parts.residuals);
-        let count =
-            own.filter(|(label, residual)| !parts.unassigned.contains(label) && **residual <= most).count();
-        let explained = count as f64 / parts.labels.len() as f64;
+    /// `explained`: the share of sensors that parts explain before joints assign the others; `labels`: the part of each sensor once they
+    /// have; `comes_back`: whether the movement consists of few motions, and comes back to similar states.
+    fn new(explained: f64, labels: &[usize], recording: &Recording, novelty: f64, comes_back: bool) -> Self {
+        let is_noisy = has_noise(recording);
+        let sizes = sizes(labels);
+        let is_one_part = sizes.len() < 2;
+        let has_small_part = sizes.values().any(|sensors| *sensors < ENOUGH_SENSORS);
         let has_offset = has_offset(&recording.tactile, recording.signed);
         let is_stroked = !is_noisy && few_at_a_time(&recording.tactile);
         let is_loop = novelty < LOOP;
         let keeps_step = is_loop && comes_back;
         let verdict = match explained {
             _ if has_offset || is_stroked || keeps_step => Verdict::DoesNotFit,
-            share if share >= GOOD && recording.tactile.samples >= SHORT && !comes_back && !is_loop => {
-                Verdict::Good
-            }
-            share if share >= DOUBTFUL => Verdict::Doubtful,
-            _ => Verdict::DoesNotFit,
+            share if share < DOUBTFUL => Verdict::DoesNotFit,
+            share if share < GOOD || recording.tactile.samples < SHORT => Verdict::Doubtful,
+            _ if comes_back || is_loop || is_one_part || has_small_part => Verdict::Doubtful,
+            _ => Verdict::Good,
         };
         let cause = match verdict {
             Verdict::Good => None,
@@ -143,6 +146,8 @@ impl Fit {
             _ if keeps_step => Some(REPETITION),
             _ if explained >= GOOD && is_loop && !is_stroked => Some(LOOPED),
             _ if explained >= GOOD && comes_back && !is_stroked => Some(SIMILARITY),
+            Verdict::Doubtful if explained >= GOOD && is_one_part => Some(ONE_PART),
+            Verdict::Doubtful if explained >= GOOD && recording.tactile.samples >= SHORT => Some(SMALL_PART),
             _ => Some(cause(&recording.tactile, is_noisy, is_stroked)),
         };
         Self { verdict, explained, novelty, cause }
@@ -175,6 +180,8 @@ pub struct Estimate {
     pub mapped: Vec<usize>,
     /// Their distances, in bits.
     pub distances: Distances,
+    /// What all this leaves open.
+    pub doubts: Vec<Doubt>,
 }
 
 /// A recording of too few sensors.
@@ -211,11 +218,27 @@ pub fn estimate(
     let parts = rigid_parts(tactile, *signed, &sensors, parameters);
     let novelty = novelty::novelty(tactile, *signed, &sensors);
     let comes_back = novelty < SIMILAR && novelty::has_few_motions(tactile, *signed, &sensors);
-    let fit = Fit::new(&parts, recording, novelty, comes_back);
+    let explained = explained(&parts, recording);
     tick();
     let (parts, joints) = refine(tactile, *signed, parts, parameters, rng);
+    let fit = Fit::new(explained, &parts.labels, recording, novelty, comes_back);
+    let doubts = doubts(&parts, &joints, parameters);
     tick();
-    Ok(Estimate { fit, parts, joints, mapped: sensors, distances })
+    Ok(Estimate { fit, parts, joints, mapped: sensors, distances, doubts })
+}
+
+/// The share of sensors that the motion of a part explains, before joints assign the others.
+fn explained(parts: &RigidParts, recording: &Recording) -> f64 {
+    let most = MAX_RESIDUAL[usize::from(has_noise(recording))];
+    let own = parts.labels.iter().zip(&parts.residuals);
+    let count =
+        own.filter(|(label, residual)| !parts.unassigned.contains(label) && **residual <= most).count();
+    count as f64 / parts.labels.len() as f64
+}
+
+/// Whether most sensors are noisy.
+fn has_noise(recording: &Recording) -> bool {
+    2 * recording.noisy > recording.sensors.len()
 }
 
 /// What is the matter if sensors do not read 0 at rest.
@@ -232,6 +255,12 @@ const LOOPED: &str = "the movement repeats itself, so that it tells no more than
 
 /// What is likely to be the matter if rigid parts explain a movement that comes back to similar states.
 const SIMILARITY: &str = "the movement comes back to similar states, as in a rhythm, and parts that keep step are hard to tell apart";
+
+/// What is likely to be the matter if there is one part.
+const ONE_PART: &str = "no two parts move against each other, so that no joint shows";
+
+/// What is likely to be the matter if a part has few sensors.
+const SMALL_PART: &str = "a part has fewer than 16 sensors, and may be a piece of another one";
 
 /// What is likely to be the matter if rigid parts do not explain a recording.
 fn cause(tactile: &Tactile, is_noisy: bool, is_stroked: bool) -> &'static str {

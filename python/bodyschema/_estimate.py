@@ -93,6 +93,9 @@ class Estimate(Joints):
         The information metric between them, bits; `body_map` takes it.
     shows_tree : bool
         Whether there is a tree: rigid parts explain the recording, or it was forced. Otherwise `tree` and `support` are empty.
+    doubts : list of str
+        What the estimate leaves open, and what recording would tell, a sentence each: joints with a support below 95 %, parts that may turn
+        about one place, parts of fewer than 16 sensors, and sensors that another part explains nearly as well. Empty where there is no tree.
     """
 
     fit: Fit
@@ -115,6 +118,7 @@ class Estimate(Joints):
     mapped: np.ndarray
     distances: np.ndarray
     shows_tree: bool
+    doubts: list[str]
 
     def sensors_of(self, part: int) -> np.ndarray:
         """The sensors on a part, rising."""
@@ -138,13 +142,8 @@ class Estimate(Joints):
             for part, node in self._nodes().items()
         }
         lines.extend(_picture.text_tree(names, self.tree, self.support))
+        lines.extend(self.doubts)
         lines.extend(self._again())
-        if len(self.labels) == 1:
-            residual = float(np.nanmean(self.residuals))
-            still = "; no joint seems to move" if residual < 0.05 else ""
-            lines.append(
-                f"no two parts can be distinguished: the residual variance of a single rigid motion is {100 * residual:.1f} %{still}"
-            )
         return "\n".join(lines)
 
     def _again(self) -> list[str]:
@@ -303,4 +302,5 @@ def estimate(
         mapped=facts["mapped"],
         distances=facts["distances"],
         shows_tree=shows_tree,
+        doubts=facts["doubts"] if shows_tree else [],
     )

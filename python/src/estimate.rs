@@ -143,12 +143,13 @@ pub(crate) fn estimate<'py>(
     let (recording, found, again) = outcome.map_err(|error: TooFewSensors| value_error(error))?;
     let facts = PyDict::new(py);
     became(&facts, &recording)?;
-    let Estimate { fit, parts, joints, mapped, distances } = found;
+    let Estimate { fit, parts, joints, mapped, distances, doubts } = found;
     facts.set_item("verdict", fit.verdict.to_string())?;
     facts.set_item("fits", fit.fits())?;
     facts.set_item("explained", fit.explained)?;
     facts.set_item("novelty", fit.novelty)?;
     facts.set_item("cause", fit.cause)?;
+    facts.set_item("doubts", doubts.iter().map(ToString::to_string).collect::<Vec<String>>())?;
     let (others, left): (Vec<i64>, Vec<f64>) = parts
         .alternatives
         .iter()

@@ -46,8 +46,10 @@ def test_estimate(folder, tmp_path, command, moved, kind):
         warnings.simplefilter("ignore", bodyschema.RecordingWarning)
         found = bodyschema.estimate(touch, random_state=SEED, force=True, repeats=repeats)
     summary = json.loads((tmp_path / "found/summary.json").read_text())
-    facts = [found.fit.verdict, found.fit.explained, found.fit.novelty, len(found.samples), len(found.labels), found.noisy, found.signed, found.seed]
-    assert facts == [summary[name] for name in ["fit", "explained", "novelty", "samples", "parts", "noisy", "signed", "seed"]]
+    fit = found.fit
+    facts = [fit.verdict, fit.cause, fit.explained, fit.novelty, len(found.samples), len(found.labels), found.doubts, found.noisy, found.signed]
+    names = ["fit", "cause", "explained", "novelty", "samples", "parts", "doubts", "noisy", "signed"]
+    assert [*facts, found.seed] == [summary[name] for name in [*names, "seed"]]
     rows = table(tmp_path / "found/parts.csv")
     own = rows["sensor"]
     assert np.flatnonzero(found.parts >= 0).tolist() == own.tolist()

@@ -15,7 +15,6 @@ use super::placement;
 use super::repeats;
 use super::touch::TouchFile;
 use super::tree::{self, refuse_truth};
-use crate::analysis::statistics::mean;
 use crate::estimate::{self, Repeats, estimate};
 use crate::files::tables::{write_rows, write_rows_of};
 use crate::files::{prepare_folder, remove_if_there, write_text};
@@ -65,8 +64,6 @@ struct DroppedRow {
 
 /// The exit status where rigid parts do not explain the recording.
 const NO_FIT: u8 = 1;
-/// Sensors that a part should have, of which about half feel something at a time (docs/own-data.md).
-const ENOUGH: usize = 16;
 
 /// A row of parts.csv.
 #[derive(Serialize)]
@@ -84,6 +81,7 @@ struct PartRow {
 #[derive(Serialize)]
 struct Summary {
     fit: String,
+    cause: Option<&'static str>,
     explained: f64,
     novelty: f64,
     samples: usize,
@@ -97,6 +95,7 @@ struct Summary {
     signed: bool,
     interval: Option<f64>,
     parts: usize,
+    doubts: Vec<String>,
     seed: u64,
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     parameters: BTreeMap<String, f64>,
@@ -175,7 +174,7 @@ impl Estimate {
             return Ok(ExitCode::from(NO_FIT));
         }
         let shown = Shown { name, interval, truth: truth.as_ref(), of: settings.map.of, seed };
-        write_text(&out.join("report.html"), &page(&shown.estimated(&found, &recording)))?;
+        write_text(&out.join("report.html"), &page(&shown.estimated(&found, again.as_ref(), &recording)))?;
         say_found(out, &found, again.as_ref(), &recording)?;
         placed.into_iter().try_for_each(say)?;
         if let Some(truth) = truth {
@@ -210,29 +209,8 @@ fn say_found(
         recording.tactile.samples,
         out.display()
     ))?;
-    if parts == 1 {
-        let residual = mean(&found.parts.residuals).value.unwrap_or(0.0);
-        say(format!(
-            "no two parts can be distinguished: the residual variance of a single rigid motion is {:.1} %{}",
-            100.0 * residual,
-            if residual < 0.05 { "; no joint seems to move" } else { "" }
-        ))?;
-    }
-    let sensors = |part: usize| found.parts.labels.iter().filter(|label| **label == part).count();
-    let small: Vec<usize> =
-        found.joints.ranks.keys().copied().filter(|&part| sensors(part) < ENOUGH).collect();
-    if let (Some(&part), true) = (small.first(), parts > 1) {
-        let others = if small.len() > 1 {
-            format!(", the first of {} such parts,", small.len())
-        } else {
-            String::new()
-        };
-        say(format!(
-            "part {part}{others} has {} sensors; {ENOUGH} and more are needed to rely on a part",
-            sensors(part)
-        ))?;
-    }
     tree::print(&found.joints, &found.parts.labels)?;
+    found.doubts.iter().try_for_each(say)?;
     again.map_or(Ok(()), |again| repeats::print(again, &found.joints.tree))
 }
 
@@ -274,6 +252,7 @@ fn write(
     repeats::write(out, again, &found.joints.tree)?;
     let summary = Summary {
         fit: found.fit.verdict.to_string(),
+        cause: found.fit.cause,
         explained: found.fit.explained,
         novelty: found.fit.novelty,
         samples: tactile.samples,
@@ -287,6 +266,7 @@ fn write(
         signed: *signed,
         interval: said.interval,
         parts: found.joints.ranks.len(),
+        doubts: if shows_tree { found.doubts.iter().map(ToString::to_string).collect() } else { Vec::new() },
         seed: said.seed,
         parameters: said.parameters,
         repeats: again.map(|again| again.count),

@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 
 use super::tree::in_words;
 use crate::analysis::statistics::quantile;
-use crate::estimate::{Estimate, Verdict};
+use crate::estimate::{Estimate, Repeats, SURE, Verdict};
 use crate::recording::Recording;
-use crate::report::estimated::{Estimated, PartLine};
+use crate::report::estimated::{Estimated, JointLine, PartLine};
 use crate::report::viewer::frames::Frames;
 use crate::report::viewer::scene::{Parts, Scene, TreeEdge};
 use crate::report::viewer::sketch::sketch;
@@ -29,12 +29,19 @@ pub(super) struct Shown<'a> {
 }
 
 impl Shown<'_> {
-    /// What the page shows.
-    pub(super) fn estimated(&self, found: &Estimate, recording: &Recording) -> Estimated {
+    /// What the page shows, with how often it was found again if there were repeats.
+    pub(super) fn estimated(
+        &self,
+        found: &Estimate,
+        again: Option<&Repeats>,
+        recording: &Recording,
+    ) -> Estimated {
         Estimated {
             name: self.name.clone(),
             answers: self.answers(found, recording),
-            parts: parts(found),
+            doubts: found.doubts.iter().map(ToString::to_string).collect(),
+            parts: parts(found, again),
+            joints: joints(found, again),
             scene: self.scene(found, recording),
             facts: self.facts(recording),
         }
@@ -42,7 +49,7 @@ impl Shown<'_> {
 
     fn answers(&self, found: &Estimate, recording: &Recording) -> Vec<String> {
         let joints = &found.joints;
-        let sure = joints.tree.iter().filter(|edge| joints.support(edge) >= 0.95).count();
+        let sure = joints.tree.iter().filter(|edge| joints.support(edge) >= SURE).count();
         let fit = match found.fit.verdict {
             Verdict::DoesNotFit => format!("{}; parts and tree mean nothing", found.fit),
             _ => found.fit.to_string(),
@@ -127,7 +134,7 @@ impl Shown<'_> {
     }
 }
 
-fn parts(found: &Estimate) -> Vec<PartLine> {
+fn parts(found: &Estimate, again: Option<&Repeats>) -> Vec<PartLine> {
     let mut residuals: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
     for (&part, &residual) in found.parts.labels.iter().zip(&found.parts.residuals) {
         residuals.entry(part).or_default().push(residual);
@@ -135,7 +142,17 @@ fn parts(found: &Estimate) -> Vec<PartLine> {
     let line = |(part, mut own): (usize, Vec<f64>)| {
         own.sort_by(f64::total_cmp);
         let rank = found.joints.ranks.get(&part).copied().unwrap_or(0);
-        PartLine { part, sensors: own.len(), rank, residual: quantile(&own, 0.5) }
+        let repeated = again.and_then(|again| again.parts.get(&part).copied());
+        PartLine { part, sensors: own.len(), rank, residual: quantile(&own, 0.5), repeated }
     };
     residuals.into_iter().map(line).collect()
+}
+
+fn joints(found: &Estimate, again: Option<&Repeats>) -> Vec<JointLine> {
+    let line = |(at, edge): (usize, &Edge)| JointLine {
+        parts: [edge.child, edge.parent],
+        support: found.joints.support(edge),
+        repeated: again.map(|again| again.tree[at]),
+    };
+    found.joints.tree.iter().enumerate().map(line).collect()
 }
