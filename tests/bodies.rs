@@ -107,6 +107,11 @@ fn the_study_of_bodies_repeats_itself_and_names_mistakes() {
     study("bodies.toml --out whole");
     let page = folder.text("whole/bodies.md");
     assert!(page.contains("| chain-3 | 3 | ") && page.contains("| 0.5 | 500 | 0.1 | 2 |"), "{page}");
+    assert!(
+        page.contains("| 1000 | 0 | 0 | 4, of which ")
+            && page.contains("| T | noise | good | doubtful | does not fit |"),
+        "{page}"
+    );
     assert_eq!(folder.rows("whole/recordings.csv").len(), 8);
     // One movement now, and the other one later.
     study("bodies.toml --out again --movements 1");
@@ -139,7 +144,7 @@ fn the_study_of_bodies_repeats_itself_and_names_mistakes() {
     study("locked.toml --out locked --movements 1");
     let rows = folder.text("locked/recordings.csv");
     let row = rows.lines().nth(1).unwrap();
-    assert!(row.starts_with("chain-3,1.0,1,1000,0.0,true,3,0,0.0,false,false,"), "{rows}");
+    assert!(row.starts_with("chain-3,1.0,1,1000,0.0,true,,3,0,0.0,false,false,"), "{rows}");
     // Two kinds of movement, of which one is the first study's, whose first movement it repeats.
     let rhythmic = "[[movement]]\nname = \"rhythmic\"\nsettings = { motion = { movement = \"rhythmic\" } }\n";
     let kinds = |more: &str| format!("{}[[movement]]\nname = \"random\"\n{more}", design("[0.0, 0.5]"));

@@ -52,6 +52,9 @@ pub(super) struct Row {
     pub noise: f64,
     /// Whether the physics step resolves the movement.
     pub resolved: bool,
+    /// The verdict on the fit; empty where there is no estimate, or the study is older.
+    #[serde(default)]
+    pub fit: String,
     /// Number of true parts.
     pub true_parts: usize,
     /// Number of estimated parts.
@@ -160,6 +163,7 @@ impl Movement<'_> {
             samples: seen.recording.samples,
             noise: seen.recording.noise,
             resolved: seen.resolved,
+            fit: String::new(),
             true_parts: seen.truth.parts(),
             parts: 0,
             ari: 0.0,
@@ -204,6 +208,7 @@ impl Movement<'_> {
         };
         let found = scored(labels, &joints.tree);
         let row = Row {
+            fit: estimated.fit.verdict.to_string(),
             parts: joints.ranks.len(),
             ari: found.ari,
             parts_right: parts_match(labels, &truth),

@@ -6,6 +6,7 @@ use super::design::{Design, Recording, Way};
 use super::movement::{EdgeRow, Row};
 use crate::analysis::published::Unit;
 use crate::analysis::statistics::{mean, rate};
+use crate::estimate::Verdict;
 use crate::report::markdown::{row, rule};
 use crate::report::numbers;
 use crate::report::plot::effects::{Cell, Column, Line};
@@ -93,7 +94,7 @@ impl Page<'_> {
 
     /// The page.
     pub(super) fn text(&self) -> String {
-        [self.methods(), self.by_body(), self.supports()].concat().join("\n")
+        [self.methods(), self.by_fit(), self.by_body(), self.supports()].concat().join("\n")
     }
 
     /// How often each method is right.
@@ -130,6 +131,35 @@ impl Page<'_> {
                 let cells = way.name().map(str::to_owned).into_iter().chain(cells);
                 lines.push(row(cells.chain(METHODS.map(|(_, right)| share(&own, right)))));
             }
+        }
+        lines
+    }
+
+    /// How often the tree is right, by the verdict on the fit; nothing of a study that has no verdicts.
+    fn by_fit(&self) -> Vec<String> {
+        if self.rows.iter().all(|row| row.fit.is_empty()) {
+            return Vec::new();
+        }
+        let mut lines = vec![
+            "\n## Does the verdict on the fit tell?\n".to_owned(),
+            "In how many recordings `estimate` gives each verdict, and how often the tree is then right. Trees count here also where it shows \
+             none. All p are together.\n"
+                .to_owned(),
+        ];
+        let verdicts = [Verdict::Good, Verdict::Doubtful, Verdict::DoesNotFit].map(|one| one.to_string());
+        lines.push(row(["T", "noise"].map(str::to_owned).into_iter().chain(verdicts.clone())));
+        lines.push(rule(2 + verdicts.len()));
+        for &Recording { samples, noise } in &self.design.recordings {
+            let own = |fit: &String| {
+                let own = self.rows.iter().filter(|row| (row.samples, row.noise) == (samples, noise));
+                let own: Vec<&Row> = own.filter(|row| row.fit == *fit).collect();
+                if own.is_empty() {
+                    return "0".to_owned();
+                }
+                format!("{}, of which {} right", own.len(), share(&own, |row| row.tree_right))
+            };
+            let first = [samples.to_string(), noise.to_string()];
+            lines.push(row(first.into_iter().chain(verdicts.iter().map(own))));
         }
         lines
     }
