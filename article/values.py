@@ -277,20 +277,21 @@ def multiverse(published):
     source = f"{folder}/questions.csv"
     questions = table(source)
     answers = [name for name in questions[0] if name not in ("factor", "all") and not name.endswith(("_low", "_high"))]
-    all_answers = ["whether a tree can be judged", "the headline", "dependence on d", "dependence on p", "parts"]
-    missing = [ANSWERS[name] for name in all_answers if name not in answers]
-    value("answers", listed([ANSWERS[name] for name in answers]), source)
-    value("answers-missing", listed(missing), source)
-    flag("answers-all", not missing)
+    value("answers-count", len(answers), source)
+    asked = lambda row: QUESTIONS.get(row["factor"], f"the {row['factor']}")
+    for key, name in ANSWERS.items():
+        certain = [row for row in questions if float(row.get(f"{name}_low", 0)) > 0]
+        first = sorted(certain, key=lambda row: -float(row[name]))[:3]
+        named = [f"{asked(row)}, {share(row, name, f'{name}_low', f'{name}_high')}" for row in first]
+        value(f"asked-{key}", "; ".join(named) or "none yet", source)
     for at, row in enumerate(questions[:3], 1):
-        value(f"question-{at}", QUESTIONS.get(row["factor"], f"the {row['factor']}"), source)
+        value(f"question-{at}", asked(row), source)
         value(f"question-{at}-share", share(row, "all", "all_low", "all_high"), source)
 
 
-# What the tables call answers and settings, in the words of the article.
+# What the tables call answers and settings; the latter in the words of the article.
 ANSWERS = {
-    "whether a tree can be judged": "whether a tree can be judged", "the headline": "the published rate",
-    "dependence on d": "the dependence on d", "dependence on p": "the dependence on p", "parts": "the number of parts and their ARI",
+    "judged": "whether a tree can be judged", "headline": "the headline", "d": "dependence on d", "p": "dependence on p", "parts": "parts",
 }
 QUESTIONS = {
     "reading": "whether the equations or the authors' code made the figures", "start of a chain": "how a chain starts",
@@ -298,10 +299,6 @@ QUESTIONS = {
     "fluid": "whether the fluid pushes back", "scaling": "the kind of scaling", "what is scaled": "what is scaled",
     "targets of a joint's axes": "whether both axes of a joint share a target",
 }
-
-
-def listed(words):
-    return " and ".join(filter(None, [", ".join(words[:-1]), *words[-1:]]))
 
 
 def share(row, middle="share", low="low", high="high"):

@@ -23,6 +23,7 @@ try:
 except ModuleNotFoundError as missing:
     sys.exit(f"multiverse: needs {missing.name}; run: pip install -r python/requirements.txt")
 
+import trade_offs
 from estimated import ROOT, fail, wilson, write
 
 SEED = 6700000
@@ -39,8 +40,10 @@ ANSWERS = {
 MOVEMENTS = (64, 16, 20)
 # Groups of movements that the jackknife leaves out, one after the other.
 GROUPS = 16
-# Pairs of factors that have an interval and are on the page.
+# Pairs of factors that have an interval and are on the page; and pairs of claims.
 PAIRS = 5
+# Settings that are named of each answer, at most; and those whose options are on the page: the first ones of each answer about trees.
+NAMED, SHOWN = 3, {"whether a tree can be judged": 2, "the headline": 1, "dependence on d": 1, "dependence on p": 1}
 # Fewer eligible samples than this give a coarse rate.
 FEW = 5
 # Numbers of choices that differ from the default, for the table of the surroundings.
@@ -69,9 +72,10 @@ def main():
     write(arguments.out / "questions.csv", list(questions[0]), questions)
     pairs = pairs_of(chosen, whole)
     write(arguments.out / "pairs.csv", list(pairs[0]), pairs)
-    deciding = [row["factor"] for row in questions[:3]]
-    choices = [row for factor in deciding for row in by_option(whole, factor)]
+    choices = [row for factor in whole.factors if factor != MEANING for row in by_option(whole, factor)]
     write(arguments.out / "choices.csv", list(choices[0]), choices)
+    claims = trade_offs.pairs(whole, trade_offs.scored())
+    write(arguments.out / "trade-offs.csv", list(claims[0]), claims)
     around = by_distance(near) if len(near) else []
     if around:
         write(arguments.out / "near.csv", list(around[0]), around)
@@ -80,7 +84,7 @@ def main():
     rates = distribution(whole)
     write(arguments.out / "distribution.csv", list(rates), [rates])
     (arguments.out / "explorer.html").write_text(explorer(chosen, whole))
-    (arguments.out / "README.md").write_text(page(parts, shares, same, choices, around, questions, pairs, errors))
+    (arguments.out / "README.md").write_text(page(parts, shares, same, choices, claims, around, questions, pairs, errors))
 
 
 # ---- Shares
@@ -282,7 +286,7 @@ def explorer(chosen, part):
         "overrides": overrides(part),
         "codes": ["".join("-" if code == OVERRIDDEN else str(code) for code in codes) for codes in part.codes],
         "names": [int(row["configuration"]) for row in part.rows],
-        "shown": [HEADLINE, "tree-low-dimensions", "tree-random-movement"],
+        "shown": [HEADLINE, "tree-low-dimensions", "tree-high-dimensions", "tree-random-movement"],
         "claims": [
             {
                 "id": claim, "name": name, "published": published[claim].get("wording", ""), "percent": claim in PERCENT,
@@ -395,7 +399,7 @@ def table(header, rows):
             *("| " + " | ".join(str(cell) for cell in row) + " |" for row in rows)]
 
 
-def page(parts, shares, same, choices, around, questions, pairs, errors):
+def page(parts, shares, same, choices, claims, around, questions, pairs, errors):
     whole, near, held_out = parts.values()
     of = {(row["part"], row["group"], row["claim"]): row for row in shares}
     own = lambda claim, group="all": of["multiverse", group, claim]
@@ -433,10 +437,25 @@ def page(parts, shares, same, choices, around, questions, pairs, errors):
         "",
         "## What does it depend on?",
         "",
-        "These choices are first in the [table below](#what-to-ask-the-authors). Before each share stands the number of replications that can judge",
-        "the claim. All: [choices.csv](choices.csv).",
+        "These settings explain most of an answer about trees in the [table below](#what-to-ask-the-authors): the first two of whether a tree can be",
+        "judged, and the first one of each other answer. Before each share stands the number of replications that can judge the claim. All",
+        "settings: [choices.csv](choices.csv).",
         "",
-        *table(["choice", "n", "tree accuracy: judged, holds", *(f"{name}: judged, holds" for name in TOGETHER)], by_choice(choices)),
+        *table(["choice", "n", "tree accuracy: judged, holds", *(f"{name}: judged, holds" for name in TOGETHER)],
+               by_choice([row for factor in deciding(questions) for row in choices if row["factor"] == factor])),
+        "",
+        *least_judged(choices),
+        "",
+        "## Which claims hold together?",
+        "",
+        *in_one(parts),
+        "",
+        "These pairs of claims fall short of chance the most: in how many replications that can judge both each claim holds, and both do. The last",
+        "column is in how many both would hold if neither told anything of the other. All pairs: [trade-offs.csv](trade-offs.csv).",
+        "",
+        *table(["claim", "other claim", "can judge both", "the one holds", "the other holds", "both hold", "both by chance"],
+               [[label(row["claim"]), label(row["other"]), row["judged"], row["holds"], row["other_holds"], row["both"], f"{float(row['expected']):.1f}"]
+                for row in claims[:PAIRS]]),
         "",
         "## Where does the published number lie?",
         "",
@@ -524,7 +543,6 @@ def progress(parts):
 def answer(whole, own, questions):
     """The answer in a paragraph."""
     headline, on_d, on_p = own(HEADLINE), own("dependence on d"), own("dependence on p")
-    told = [row for row in questions if float(row["all_low"]) > 0][:3]
     few = (whole.eligible[whole.judged[HEADLINE]] < FEW).sum()
     lines = [
         f"Of {headline['n']:,} reasonable replications, {headline['judged']:,} ({percent(headline['judged'] / headline['n'])}) can judge the",
@@ -534,16 +552,61 @@ def answer(whole, own, questions):
         f"at each d from 9 on. The dependence on p holds in **{with_ends(on_p)}** of {on_p['judged']:,}: p = 0.9 is best, with at least half of",
         "the trees right, and at most half at p of 0.4 and below.",
     ]
-    if told:
-        names = [f"{quoted(row['factor'])} ({with_ends(row, 'all')})" for row in told]
-        lines += [
-            f"If the authors answered one question, {quoted(told[0]['factor'])} would narrow the answers most. By the",
-            f"share of the variance of {len(answers_in(questions))} answers that each explains (first-order Sobol index, on average), these come first:",
-            f"{'; '.join(names)}.",
-        ]
+    lines += deciding_in_words(questions)
     missing = [name for name in ANSWERS if name not in questions[0]]
     if missing:
         lines.append(f"Nothing can be told yet of what decides {' and '.join(missing)}.")
+    return lines
+
+
+def told(questions, answer):
+    """The settings of which an answer depends for certain, the most important first."""
+    certain = [row for row in questions if float(row[f"{answer}_low"]) > 0]
+    return sorted(certain, key=lambda row: -float(row[answer]))
+
+
+def deciding_in_words(questions):
+    """What each answer depends on, as far as that is told, and which question would narrow all of them most."""
+    named = lambda row, answer: f"{quoted(row['factor'])} ({with_ends(row, answer)})"
+    answers = {answer: [named(row, answer) for row in told(questions, answer)[:NAMED]] for answer in answers_in(questions)}
+    lines = ["What do these answers depend on? A share is that of an answer's variance which knowing the setting takes away (first-order Sobol index)."]
+    lines += [f"For {answer}: {', '.join(names)}." for answer, names in answers.items() if names]
+    untold = [answer for answer, names in answers.items() if not names]
+    if untold:
+        lines.append(f"For {' and '.join(untold)}, nothing is certain yet: every interval reaches 0.")
+    first = told(questions, "all")
+    if first:
+        most = max(answers_in(questions), key=lambda answer: float(first[0][answer]))
+        lines.append(f"If the authors answered one question, {quoted(first[0]['factor'])} would narrow the answers most: it takes away "
+                     f"{with_ends(first[0], 'all')} of their variance on average, and {with_ends(first[0], most)} of that of {most}.")
+    return lines
+
+
+def deciding(questions):
+    """The settings whose options the page shows."""
+    found = []
+    for answer, count in SHOWN.items():
+        if answer in questions[0]:
+            found += [row["factor"] for row in sorted(questions, key=lambda row: -float(row[answer]))[:count]]
+    return list(dict.fromkeys(found))
+
+
+def least_judged(choices):
+    """The options with which hardly any replication can judge the tree accuracy, in a sentence."""
+    own = [row for row in choices if row["claim"] == HEADLINE and 20 * row["judged"] < row["n"]]
+    names = [f"{quoted(row['factor'] + ': ' + row['option'])} ({row['judged']} of {row['n']})" for row in own]
+    return [f"With these options, fewer than one replication in twenty can judge the tree accuracy: {', '.join(names)}."] if names else []
+
+
+def in_one(parts):
+    """How many of the scored claims hold at once, in sentences."""
+    claims, lines = trade_offs.scored(), []
+    names = dict(zip(parts, ["the replications", "those near the default", "those held out"]))
+    for name, part in parts.items():
+        if len(part):
+            counts = trade_offs.together(part, claims)
+            lines.append(f"Of {names[name]} ({len(part)}), {(counts == counts.max()).sum()} hold {counts.max()} of the {len(claims)} scored claims at "
+                         "once, and none holds more.")
     return lines
 
 
