@@ -26,7 +26,7 @@ SEED, SECONDS, INTERVAL = 4980000, 1000, 0.1  # s
 SETTINGS = "physics.step = 0.02\nmotion = { coordination = 0.5, epoch = 250 }\n"
 # The limits were chosen on star, tee, y, quadruped and chain-3, when other movements of arm, chain-6, fork and ladder had been seen.
 BODIES = ["arm", "chain-6", "chain-10", "fork", "ladder", "snake"]
-COLUMNS = ["kind", "body", "revision", "samples", "sensors", "fit", "explained", "parts"]
+COLUMNS = ["kind", "truth", "body", "revision", "samples", "sensors", "fit", "explained", "parts"]
 REACH = 0.05  # m, standard deviation of what a finger presses on
 STROKE, LATEST, PERIOD = 20, 20, 100  # samples of a stroke, largest delay of a sensor, and samples after which all repeats
 
@@ -73,7 +73,7 @@ def measured(body, revision):
         for kind in KINDS:
             touch = getattr(moved, kind)()
             np.save(folder / "touch.npy", touch.astype(np.float32))
-            yield {"kind": kind, "body": body, "revision": revision, "samples": len(touch), "sensors": touch.shape[1],
+            yield {"kind": kind, "truth": KINDS[kind][1], "body": body, "revision": revision, "samples": len(touch), "sensors": touch.shape[1],
                    **verdict(folder / "touch.npy", folder / f"found-{kind}")}
 
 
@@ -176,7 +176,7 @@ def is_alarm(row):
 
 
 def page(rows):
-    of = lambda right: [row for row in rows if KINDS[row["kind"]][1] == right]
+    of = lambda right: [row for row in rows if row["truth"] == right]
     false, missed = of(FIT), of(OTHER)
     lines = [
         "# Is it said where rigid parts do not fit?",

@@ -1,6 +1,6 @@
 /* The floor of the simulation: the agent of reproduce/paper.toml, every joint locked, and nothing but
  * dWorldStep. Prints the seconds of STEPS steps. A limit of the locks' torque (N m) makes each step solve a
- * complementarity problem; without one, as in src/simulate/world.rs, it is a linear system.
+ * complementarity problem; without one, as in src/stages/simulate/world.rs, it is a linear system.
  *
  * cc -O2 bare_loop.c -o bare_loop $(pkg-config --cflags --libs ode) && ./bare_loop 1000000 [TORQUE]
  */

@@ -1,4 +1,4 @@
-"""Symbols of full size -> the time that NumPy and scikit-learn take for what src/distance.rs does, in seconds.
+"""Symbols of full size -> the time that NumPy and scikit-learn take for what src/stages/distance does, in seconds.
 
 Run: pip install -r benches/peers/requirements.txt
      python benches/peers/distance.py

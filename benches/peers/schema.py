@@ -23,7 +23,7 @@ def points(seed=1):
 
 
 def sweep(x, labels, joints, prior, rng):
-    """z, (mu, Sigma), pi, joints and tree, as src/schema/sweep.rs has them, written as one writes NumPy."""
+    """z, (mu, Sigma), pi, joints and tree, as src/stages/schema has them, written as one writes NumPy."""
     scale0, k0, nu0 = prior
     means, precisions, roots = [], [], []
     for k in range(K):
