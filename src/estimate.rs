@@ -42,12 +42,12 @@ use std::fmt;
 
 use rand::Rng;
 
-pub use self::doubts::{Doubt, SURE};
-use self::doubts::{ENOUGH_SENSORS, doubts};
+pub use self::doubts::Doubt;
+pub(crate) use self::doubts::SURE;
+use self::doubts::doubts;
 use self::offset::has_offset;
 pub use self::repeats::{Repeats, repeats};
 use self::strokes::few_at_a_time;
-use crate::numerics::partition::sizes;
 use crate::recording::Recording;
 use crate::stages::distance::{Distances, information_metric};
 use crate::stages::joints::{Joints, refine};
@@ -122,13 +122,12 @@ pub struct Fit {
 }
 
 impl Fit {
-    /// `explained`: the share of sensors that parts explain before joints assign the others; `labels`: the part of each sensor once they
-    /// have; `comes_back`: whether the movement consists of few motions, and comes back to similar states.
-    fn new(explained: f64, labels: &[usize], recording: &Recording, novelty: f64, comes_back: bool) -> Self {
+    /// `explained`: the share of sensors that parts explain before joints assign the others; `doubts`: what parts and joints leave open;
+    /// `comes_back`: whether the movement consists of few motions, and comes back to similar states.
+    fn new(explained: f64, doubts: &[Doubt], recording: &Recording, novelty: f64, comes_back: bool) -> Self {
         let is_noisy = has_noise(recording);
-        let sizes = sizes(labels);
-        let is_one_part = sizes.len() < 2;
-        let has_small_part = sizes.values().any(|sensors| *sensors < ENOUGH_SENSORS);
+        let is_one_part = doubts.iter().any(|doubt| matches!(doubt, Doubt::OnePart(_)));
+        let has_small_part = doubts.iter().any(|doubt| matches!(doubt, Doubt::SmallParts { .. }));
         let has_offset = has_offset(&recording.tactile, recording.signed);
         let is_stroked = !is_noisy && few_at_a_time(&recording.tactile);
         let is_loop = novelty < LOOP;
@@ -180,7 +179,7 @@ pub struct Estimate {
     pub mapped: Vec<usize>,
     /// Their distances, in bits.
     pub distances: Distances,
-    /// What all this leaves open.
+    /// What all this leaves open; nothing where it does not fit, since it then means nothing.
     pub doubts: Vec<Doubt>,
 }
 
@@ -221,8 +220,11 @@ pub fn estimate(
     let explained = explained(&parts, recording);
     tick();
     let (parts, joints) = refine(tactile, *signed, parts, parameters, rng);
-    let fit = Fit::new(explained, &parts.labels, recording, novelty, comes_back);
-    let doubts = doubts(&parts, &joints, parameters);
+    let mut doubts = doubts(&parts, &joints, parameters);
+    let fit = Fit::new(explained, &doubts, recording, novelty, comes_back);
+    if !fit.fits() {
+        doubts.clear();
+    }
     tick();
     Ok(Estimate { fit, parts, joints, mapped: sensors, distances, doubts })
 }

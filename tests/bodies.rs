@@ -108,7 +108,7 @@ fn the_study_of_bodies_repeats_itself_and_names_mistakes() {
     let page = folder.text("whole/bodies.md");
     assert!(page.contains("| chain-3 | 3 | ") && page.contains("| 0.5 | 500 | 0.1 | 2 |"), "{page}");
     assert!(
-        page.contains("| 1000 | 0 | 0 | 4, of which ")
+        page.contains("| 1000 | 0 | 4, of which 100 % (")
             && page.contains("| T | noise | good | doubtful | does not fit |"),
         "{page}"
     );

@@ -99,7 +99,9 @@ fn one_command_finds_parts_and_tree() {
     let said = folder.run("estimate pads.npy --out found");
     assert_eq!(said.status, Some(1), "{said:?}");
     assert!(said.out.contains("does not fit") && said.out.contains("contact pads"), "{said:?}");
-    assert!(folder.text("found/summary.json").contains("\"fit\": \"does not fit\""));
+    let summary = folder.text("found/summary.json");
+    assert!(summary.contains("\"fit\": \"does not fit\"") && summary.contains("\"doubts\": []"), "{summary}");
+    assert!(summary.contains("\"cause\": \"most sensors have a few levels only"), "{summary}");
     assert!(!folder.at("found/tree.csv").exists() && !folder.at("found/report.html").exists());
     assert!(!folder.at("found/repeats.csv").exists());
     assert!(folder.at("found/parts.csv").exists());
@@ -115,6 +117,10 @@ fn a_part_of_few_sensors_is_named() {
     let expected =
         "part 0, the first of 3 such parts, has 14 sensors; 16 and more are needed to rely on a part";
     assert!(said.contains(expected), "{said}");
+    assert!(said.starts_with("fit: doubtful: "), "{said}");
+    for file in ["found/summary.json", "found/report.html"] {
+        assert!(folder.text(file).contains(expected), "{file}");
+    }
 }
 
 #[test]

@@ -26,7 +26,7 @@ class Fit:
         at a time, the movement repeats itself in one rhythm, or sensors do not read 0 at rest.
     explained : float
         The share of sensors that the motion of a part explains, 0 to 1. From 0.9 on the verdict is good, from 0.8 on doubtful. Below
-        1,000 samples it is doubtful at best.
+        1,000 samples, with one part, or with a part of fewer than 16 sensors, it is doubtful at best.
     novelty : float
         The share of what is felt at a sample that the most similar other state leaves, 0 to 1, the median over samples. Below 0.001 the
         movement repeats itself; if it also consists of few motions, as one rhythm does, the verdict is "does not fit".
@@ -95,7 +95,7 @@ class Estimate(Joints):
         Whether there is a tree: rigid parts explain the recording, or it was forced. Otherwise `tree` and `support` are empty.
     doubts : list of str
         What the estimate leaves open, and what recording would tell, a sentence each: joints with a support below 95 %, parts that may turn
-        about one place, parts of fewer than 16 sensors, and sensors that another part explains nearly as well. Empty where there is no tree.
+        about one place, parts of fewer than 16 sensors, and sensors that may be on another part. Empty where rigid parts do not fit.
     """
 
     fit: Fit
@@ -302,5 +302,5 @@ def estimate(
         mapped=facts["mapped"],
         distances=facts["distances"],
         shows_tree=shows_tree,
-        doubts=facts["doubts"] if shows_tree else [],
+        doubts=facts["doubts"],
     )

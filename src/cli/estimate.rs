@@ -266,7 +266,7 @@ fn write(
         signed: *signed,
         interval: said.interval,
         parts: found.joints.ranks.len(),
-        doubts: if shows_tree { found.doubts.iter().map(ToString::to_string).collect() } else { Vec::new() },
+        doubts: found.doubts.iter().map(ToString::to_string).collect(),
         seed: said.seed,
         parameters: said.parameters,
         repeats: again.map(|again| again.count),

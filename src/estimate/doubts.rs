@@ -3,17 +3,17 @@
 use std::fmt;
 
 use crate::numerics::partition::sizes;
-use crate::stages::joints::{Joints, Pair};
+use crate::stages::joints::{Joints, Rival};
 use crate::stages::parameters::Parameters;
 use crate::stages::rigid_parts::RigidParts;
 use crate::stages::tree::Edge;
 
-/// Sensors that a part should have, of which about half feel something at a time (docs/own-data.md). Of 49 calibration recordings whose trees
-/// were right, none had a part of fewer.
+/// Sensors that a part should have, of which about half feel something at a time (docs/own-data.md). None of 49 calibration recordings whose
+/// trees were right had a part of fewer (revision 32a953b).
 pub(super) const ENOUGH_SENSORS: usize = 16;
 /// Bootstrap support from which on a joint counts as certain, given the parts.
-pub const SURE: f64 = 0.95;
-/// Residual of the only part above which it is none: one motion does not explain all sensors.
+pub(crate) const SURE: f64 = 0.95;
+/// If the only part has a larger mean residual, one rigid motion does not explain it.
 const ONE_MOTION: f64 = 0.05;
 
 /// Something that an estimate leaves open; as text, what it is and what recording would tell.
@@ -36,13 +36,20 @@ pub enum Doubt {
         joint: Edge,
         /// Its bootstrap support, 0 to 1.
         support: f64,
-        /// The two parts that other times join most often in its place, and how often, 0 to 1.
-        instead: Option<(usize, usize, f64)>,
+        /// What other times join most often in its place.
+        instead: Option<Rival>,
     },
-    /// Three parts or more, rising, any two of which feel one joint speed.
+    /// Three parts or more, rising, any two of which feel one joint.
     OnePlace(Vec<usize>),
-    /// So many sensors that their next best part explains nearly as well as their own.
-    Sensors(usize),
+    /// Sensors whose next best part leaves little more than their own, or less.
+    Sensors {
+        /// How many there are.
+        count: usize,
+        /// How many times as much the next best part leaves at most.
+        times: f64,
+    },
+    /// So many sensors are on their part only because of joints: no motion explains them.
+    OnlyByJoints(usize),
 }
 
 impl fmt::Display for Doubt {
@@ -66,12 +73,14 @@ impl fmt::Display for Doubt {
             }
             Self::Joint { joint, support, instead } => {
                 let Edge { child, parent } = joint;
-                write!(f, "joint {child}–{parent} is uncertain (support {:.0} %)", 100.0 * support)?;
+                // Rounded down, so that it is below the limit.
+                let percent = |share: &f64| (100.0 * share).floor();
+                write!(f, "joint {child}–{parent} is uncertain (support {} %)", percent(support))?;
                 match instead {
-                    Some((part, other, support)) => write!(
+                    Some(Rival { part, other, support }) => write!(
                         f,
-                        ": it may be {part}–{other} instead ({:.0} %); record longer, with these parts moving against each other",
-                        100.0 * support
+                        ": it may be {part}–{other} instead ({} %); record longer, with these parts moving against each other",
+                        percent(support)
                     ),
                     None => f.write_str("; record longer"),
                 }
@@ -80,97 +89,90 @@ impl fmt::Display for Doubt {
                 let names: Vec<String> = parts.iter().map(usize::to_string).collect();
                 write!(
                     f,
-                    "parts {} feel one joint: if they turn about one place, no recording tells which of them carries the others",
+                    "parts {} feel one joint: if they turn about one place, no recording tells which of them carries the others; if not, \
+                     record longer",
                     names.join(", ")
                 )
             }
-            Self::Sensors(count) => {
-                let whose = if *count == 1 { "sensor that its" } else { "sensors that their" };
-                write!(f, "{count} {whose} next best part explains nearly as well: their part is uncertain")
+            Self::Sensors { count, times } => write!(
+                f,
+                "{count} {} may be on another part: the next best one leaves at most {times:.0} times as much",
+                plural(*count)
+            ),
+            Self::OnlyByJoints(count) => {
+                write!(f, "{count} {} on a part only because of its joints (residual 0)", are(*count))
             }
         }
     }
 }
 
+fn plural(count: usize) -> &'static str {
+    if count == 1 { "sensor" } else { "sensors" }
+}
+
+fn are(count: usize) -> &'static str {
+    if count == 1 { "sensor is" } else { "sensors are" }
+}
+
 /// What parts and joints leave open.
 pub(super) fn doubts(parts: &RigidParts, joints: &Joints, parameters: &Parameters) -> Vec<Doubt> {
-    let mut found = Vec::new();
     if joints.ranks.len() < 2 {
         let sum: f64 = parts.residuals.iter().sum();
         return vec![Doubt::OnePart(sum / parts.residuals.len().max(1) as f64)];
     }
+    let mut found = Vec::new();
     let small: Vec<(usize, usize)> =
         sizes(&parts.labels).into_iter().filter(|(_, sensors)| *sensors < ENOUGH_SENSORS).collect();
     if let Some(&(part, sensors)) = small.first() {
         found.push(Doubt::SmallParts { part, sensors, count: small.len() });
     }
-    for joint in &joints.tree {
+    for (joint, instead) in joints.tree.iter().zip(&joints.rivals) {
         let support = joints.support(joint);
         if support < SURE {
-            found.push(Doubt::Joint { joint: *joint, support, instead: instead(joints, joint) });
+            found.push(Doubt::Joint { joint: *joint, support, instead: *instead });
         }
     }
     found.extend(at_one_place(joints, parameters.min_unexplained).into_iter().map(Doubt::OnePlace));
-    let is_open = |at: &usize| {
-        let next = parts.alternatives[*at].first();
-        next.is_some_and(|(_, left)| parts.residuals[*at] > parameters.max_residual_share * left)
+    let own = parts.residuals.iter().zip(&parts.alternatives);
+    let is_open = |(own, others): &(&f64, &Vec<(usize, f64)>)| {
+        others.first().is_some_and(|(_, left)| **own > parameters.max_residual_share * left)
     };
-    let open = (0..parts.labels.len()).filter(is_open).count();
-    if open > 0 {
-        found.push(Doubt::Sensors(open));
+    let count = own.filter(is_open).count();
+    if count > 0 {
+        found.push(Doubt::Sensors { count, times: 1.0 / parameters.max_residual_share });
+    }
+    let by_joints = parts.residuals.iter().filter(|residual| **residual == 0.0).count();
+    if by_joints > 0 {
+        found.push(Doubt::OnlyByJoints(by_joints));
     }
     found
 }
 
-/// The two parts that other times join most often in the place of a joint, if any do.
-fn instead(joints: &Joints, joint: &Edge) -> Option<(usize, usize, f64)> {
-    let others: Vec<Edge> = joints.tree.iter().copied().filter(|edge| edge != joint).collect();
-    let side = reached(&others, joint.child);
-    let crosses = |pair: &&Pair| !pair.in_tree && side.contains(&pair.part) != side.contains(&pair.other);
-    let best = joints.pairs.iter().filter(crosses).max_by(|a, b| a.support.total_cmp(&b.support))?;
-    (best.support > 0.0).then_some((best.part, best.other, best.support))
-}
-
-/// The parts that some joints connect with this one, itself included.
-fn reached(joints: &[Edge], part: usize) -> Vec<usize> {
-    let mut found = vec![part];
-    let mut at = 0;
-    while let Some(&own) = found.get(at) {
-        for &Edge { child, parent } in joints {
-            let next = if child == own { parent } else { child };
-            if [child, parent].contains(&own) && !found.contains(&next) {
-                found.push(next);
+/// Groups of three parts or more of which any two feel one joint, as if they turned about one place. `unexplained` is the share of a joint's
+/// squared speed below which it tells hardly any more.
+fn at_one_place(joints: &Joints, unexplained: f64) -> Vec<Vec<usize>> {
+    let pairs: Vec<(usize, usize)> = joints
+        .pairs
+        .iter()
+        .filter(|pair| 1.0 - pair.correlation.powi(2) <= unexplained)
+        .map(|pair| (pair.part, pair.other))
+        .collect();
+    let feel_one = |a: usize, b: usize| pairs.contains(&(a.min(b), a.max(b)));
+    let mut places: Vec<Vec<usize>> = Vec::new();
+    for &(a, b) in &pairs {
+        if places.iter().any(|place| place.contains(&a) && place.contains(&b)) {
+            continue;
+        }
+        let mut place = vec![a, b];
+        for &part in joints.ranks.keys() {
+            if !place.contains(&part) && place.iter().all(|&other| feel_one(part, other)) {
+                place.push(part);
             }
         }
-        at += 1;
-    }
-    found
-}
-
-/// Parts that feel one joint although the tree does not join any two of them: of two such parts, and the one between them. `unexplained` is
-/// the share of a joint's squared speed below which it tells hardly any more.
-fn at_one_place(joints: &Joints, unexplained: f64) -> Vec<Vec<usize>> {
-    let feel_one = |pair: &Pair| 1.0 - pair.correlation.powi(2) <= unexplained;
-    let joined = |a: usize, b: usize| {
-        joints
-            .pairs
-            .iter()
-            .any(|pair| pair.in_tree && feel_one(pair) && [(a, b), (b, a)].contains(&(pair.part, pair.other)))
-    };
-    let mut places: Vec<Vec<usize>> = Vec::new();
-    for pair in joints.pairs.iter().filter(|pair| !pair.in_tree && feel_one(pair)) {
-        let between = joints.ranks.keys().find(|&&part| joined(part, pair.part) && joined(part, pair.other));
-        let Some(&between) = between else { continue };
-        let mut place = vec![between, pair.part, pair.other];
-        // Two places that have two parts in common are one.
-        places.retain(|other| {
-            let is_one = other.iter().filter(|part| place.contains(part)).count() > 1;
-            place.extend(other.iter().filter(|_| is_one));
-            !is_one
-        });
-        place.sort_unstable();
-        place.dedup();
-        places.push(place);
+        if place.len() > 2 {
+            place.sort_unstable();
+            places.push(place);
+        }
     }
     places
 }

@@ -12,15 +12,10 @@ fn levels() -> Quantise {
     Settings::load_over(Some(Base::ESTIMATE), None).unwrap().quantise
 }
 
-/// The part of each of 32 sensors: two parts.
-fn halves() -> Vec<usize> {
-    (0..32).map(|sensor| sensor / 16).collect()
-}
-
 /// Two parts of 16 sensors, which do not explain the last ones, so many.
 fn two_halves(unexplained: usize) -> RigidParts {
     RigidParts {
-        labels: halves(),
+        labels: (0..32).map(|sensor| sensor / 16).collect(),
         residuals: (0..32).map(|at| if at + unexplained < 32 { 0.0 } else { 0.06 }).collect(),
         alternatives: vec![Vec::new(); 32],
         unassigned: Vec::new(),
@@ -36,7 +31,7 @@ fn felt(rest: f32, samples: usize) -> Recording {
 
 /// The verdict on a recording of these sensors, if all are explained.
 fn judged(recording: &Recording, novelty: f64) -> Fit {
-    Fit::new(1.0, &halves(), recording, novelty, novelty < SIMILAR)
+    Fit::new(1.0, &[], recording, novelty, novelty < SIMILAR)
 }
 
 #[test]
@@ -48,7 +43,7 @@ fn whatever_is_explained_a_short_recording_is_doubtful_and_one_that_repeats_or_h
     let similar = fit(SHORT, 0.01);
     assert_eq!((similar.verdict, similar.cause), (Verdict::Doubtful, Some(SIMILARITY)));
     // A loop of many motions, as a walk that was recorded once and repeated.
-    let looped = Fit::new(1.0, &halves(), &felt(0.0, SHORT), 1e-4, false);
+    let looped = Fit::new(1.0, &[], &felt(0.0, SHORT), 1e-4, false);
     assert_eq!((looped.verdict, looped.cause), (Verdict::Doubtful, Some(LOOPED)));
     let short = fit(SHORT - 1, 0.1);
     assert_eq!((short.verdict, short.explained), (Verdict::Doubtful, 1.0));
@@ -65,7 +60,7 @@ fn the_fewer_sensors_are_explained_the_worse_is_the_verdict() {
     let recording = felt(0.0, SHORT);
     let verdict = |unexplained: usize| {
         let share = explained(&two_halves(unexplained), &recording);
-        Fit::new(share, &halves(), &recording, 0.5, false).verdict
+        Fit::new(share, &[], &recording, 0.5, false).verdict
     };
     // 91 %, 88 % and 78 % of 32 sensors.
     let found = [3, 4, 7].map(verdict);
@@ -74,22 +69,21 @@ fn the_fewer_sensors_are_explained_the_worse_is_the_verdict() {
 
 #[test]
 fn one_part_and_a_part_of_few_sensors_are_doubtful() {
-    let fit = |labels: &[usize], samples: usize| {
-        let fit = Fit::new(1.0, labels, &felt(0.0, samples), 0.5, false);
+    let fit = |doubt: &Doubt, samples: usize| {
+        let fit = Fit::new(1.0, std::slice::from_ref(doubt), &felt(0.0, samples), 0.5, false);
         (fit.verdict, fit.cause)
     };
-    assert_eq!(fit(&[0; 32], SHORT), (Verdict::Doubtful, Some(ONE_PART)));
-    let mut labels = halves();
-    labels[16] = 0;
-    assert_eq!(fit(&labels, SHORT), (Verdict::Doubtful, Some(SMALL_PART)));
+    let small = Doubt::SmallParts { part: 0, sensors: 15, count: 1 };
+    assert_eq!(fit(&Doubt::OnePart(0.0), SHORT), (Verdict::Doubtful, Some(ONE_PART)));
+    assert_eq!(fit(&small, SHORT), (Verdict::Doubtful, Some(SMALL_PART)));
+    // Other doubts are of joints and sensors, and say nothing of the fit.
+    assert_eq!(fit(&Doubt::OnlyByJoints(3), SHORT), (Verdict::Good, None));
     // That a recording is short may be why there is a small part.
-    let short = fit(&labels, SHORT - 1);
+    let short = fit(&small, SHORT - 1);
     assert!(short.0 == Verdict::Doubtful && short.1 != Some(SMALL_PART), "{short:?}");
-    // Where the movement does not fit, nothing else counts.
-    assert_eq!(
-        Fit::new(1.0, &[0; 32], &felt(0.01, SHORT), 0.5, false).cause.map(str::len),
-        Some(OFFSET.len())
-    );
+    // Where it does not fit, nothing else counts.
+    let offset = Fit::new(1.0, &[Doubt::OnePart(0.0)], &felt(0.01, SHORT), 0.5, false);
+    assert_eq!((offset.verdict, offset.cause), (Verdict::DoesNotFit, Some(OFFSET)));
 }
 
 #[test]

@@ -71,7 +71,7 @@ pub(crate) fn page(estimated: &Estimated) -> String {
                 (joint_table(joints))
                 h2 { "How this estimate was made" }
                 dl { @for (name, value) in facts { dt { (name) } dd { (value) } } }
-                p { "All numbers are in parts.csv, tree.csv, edges.csv and summary.json beside this page." }
+                p { "All numbers are in parts.csv, tree.csv, edges.csv and summary.json beside this page, and those of repeats in repeats.csv." }
             }
         }
     };
@@ -133,3 +133,6 @@ fn joint_table(joints: &[JointLine]) -> Markup {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -143,23 +143,31 @@ impl Page<'_> {
         let mut lines = vec![
             "\n## Does the verdict on the fit tell?\n".to_owned(),
             "In how many recordings `estimate` gives each verdict, and how often the tree is then right. Trees count here also where it shows \
-             none. All p are together.\n"
+             none. All p are together; recordings in which nothing could be estimated are left out.\n"
                 .to_owned(),
         ];
         let verdicts = [Verdict::Good, Verdict::Doubtful, Verdict::DoesNotFit].map(|one| one.to_string());
-        lines.push(row(["T", "noise"].map(str::to_owned).into_iter().chain(verdicts.clone())));
-        lines.push(rule(2 + verdicts.len()));
-        for &Recording { samples, noise } in &self.design.recordings {
-            let own = |fit: &String| {
-                let own = self.rows.iter().filter(|row| (row.samples, row.noise) == (samples, noise));
-                let own: Vec<&Row> = own.filter(|row| row.fit == *fit).collect();
-                if own.is_empty() {
-                    return "0".to_owned();
-                }
-                format!("{}, of which {} right", own.len(), share(&own, |row| row.tree_right))
-            };
-            let first = [samples.to_string(), noise.to_string()];
-            lines.push(row(first.into_iter().chain(verdicts.iter().map(own))));
+        let ways = self.design.ways();
+        let kinds: BTreeSet<Option<&str>> = ways.iter().map(Way::name).collect();
+        let kind = (!self.design.kinds.is_empty()).then_some("movement").map(str::to_owned);
+        let header = kind.iter().cloned().chain(["T", "noise"].map(str::to_owned));
+        lines.push(row(header.chain(verdicts.clone())));
+        lines.push(rule(kind.iter().count() + 2 + verdicts.len()));
+        for kind in kinds {
+            for &Recording { samples, noise } in &self.design.recordings {
+                let own = |fit: &String| {
+                    let of_kind = self.rows.iter().filter(|row| row.kind.as_deref() == kind);
+                    let own = of_kind.filter(|row| (row.samples, row.noise) == (samples, noise));
+                    let own: Vec<&Row> = own.filter(|row| row.fit == *fit).collect();
+                    if own.is_empty() {
+                        return "0".to_owned();
+                    }
+                    format!("{}, of which {} right", own.len(), share(&own, |row| row.tree_right))
+                };
+                let first =
+                    kind.map(str::to_owned).into_iter().chain([samples.to_string(), noise.to_string()]);
+                lines.push(row(first.chain(verdicts.iter().map(own))));
+            }
         }
         lines
     }

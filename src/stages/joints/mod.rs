@@ -22,5 +22,5 @@ mod tree;
 
 pub(crate) use self::information::of_correlation;
 pub(crate) use self::refine::{refine, refine_tree};
-pub use self::tree::{Joints, Pair, joints};
+pub use self::tree::{Joints, Pair, Rival, joints};
 pub(crate) use self::tree::{blocks, joint_tree};

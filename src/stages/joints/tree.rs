@@ -1,7 +1,7 @@
 //! Estimate the tree over parts, the tree of most information between them (Chow and Liu 1968), and the bootstrap support of its edges
 //! (Felsenstein 1985).
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use nalgebra::DMatrix;
 use rand::{Rng, RngExt};
@@ -39,6 +39,17 @@ pub struct Pair {
     pub in_tree: bool,
 }
 
+/// Two parts that resampled trees join in the place of a joint: they connect the same parts of the body.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rival {
+    /// Label of one part.
+    pub part: usize,
+    /// Label of the other, which is larger.
+    pub other: usize,
+    /// Share of resampled trees that lack the joint and join these two instead, 0 to 1.
+    pub support: f64,
+}
+
 /// How the parts of a body are joined.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Joints {
@@ -46,6 +57,8 @@ pub struct Joints {
     pub ranks: BTreeMap<usize, usize>,
     /// The tree between labels of parts: one edge fewer than parts. Which part is the root says nothing.
     pub tree: Vec<Edge>,
+    /// For each edge of the tree, what resampled trees have most often in its place, if any lacks it.
+    pub rivals: Vec<Option<Rival>>,
     /// All pairs of parts, by their labels.
     pub pairs: Vec<Pair>,
 }
@@ -71,7 +84,8 @@ impl Joints {
         let Dependence { correlations, information } = moments.dependence();
         let tree = maximum_spanning_tree(&information);
         let mut times_joined = DMatrix::<usize>::zeros(labels.len(), labels.len());
-        for edge in resampled_trees(&moments, rng).iter().flatten() {
+        let resampled = resampled_trees(&moments, rng);
+        for edge in resampled.iter().flatten() {
             times_joined[(edge.child.min(edge.parent), edge.child.max(edge.parent))] += 1;
         }
         let pairs = (0..labels.len()).flat_map(|a| (a + 1..labels.len()).map(move |b| (a, b)));
@@ -90,7 +104,12 @@ impl Joints {
             support: support(a, b),
             in_tree: is_edge(a, b),
         };
+        let rival = |at: usize| {
+            let (a, b, times) = most_often_instead(&tree, at, &resampled)?;
+            Some(Rival { part: labels[a], other: labels[b], support: times as f64 / RESAMPLES as f64 })
+        };
         Self {
+            rivals: (0..tree.len()).map(rival).collect(),
             pairs: pairs.map(pair).collect(),
             tree: labelled(&tree, labels),
             ranks: labels.iter().zip(motions).map(|(&part, motion)| (part, motion.rank)).collect(),
@@ -158,6 +177,33 @@ pub(crate) fn blocks(samples: usize) -> usize {
 /// A tree over places in a list, over the labels there.
 fn labelled(tree: &[Edge], labels: &[usize]) -> Vec<Edge> {
     tree.iter().map(|edge| Edge { child: labels[edge.child], parent: labels[edge.parent] }).collect()
+}
+
+/// The pair that most of the other trees have in the place of an edge, and how many: of those that lack it, the pair that joins the two sides
+/// of the tree without it. The first of those that are as frequent.
+fn most_often_instead(tree: &[Edge], at: usize, others: &[Vec<Edge>]) -> Option<(usize, usize, usize)> {
+    let ends = |edge: &Edge| (edge.child.min(edge.parent), edge.child.max(edge.parent));
+    let own = ends(&tree[at]);
+    let rest: Vec<Edge> = tree.iter().copied().filter(|edge| ends(edge) != own).collect();
+    let side = reached(&rest, own.0);
+    let mut times: BTreeMap<(usize, usize), usize> = BTreeMap::new();
+    for other in others.iter().filter(|other| other.iter().all(|edge| ends(edge) != own)) {
+        let crosses = |edge: &&Edge| side.contains(&edge.child) != side.contains(&edge.parent);
+        other.iter().filter(crosses).for_each(|edge| *times.entry(ends(edge)).or_default() += 1);
+    }
+    times.into_iter().rev().max_by_key(|(_, times)| *times).map(|((a, b), times)| (a, b, times))
+}
+
+/// The nodes that some edges connect with this one, itself included.
+fn reached(edges: &[Edge], node: usize) -> BTreeSet<usize> {
+    let (mut found, mut open) = (BTreeSet::from([node]), vec![node]);
+    while let Some(own) = open.pop() {
+        for &Edge { child, parent } in edges {
+            let next = [(child, parent), (parent, child)].into_iter().filter(|ends| ends.0 == own);
+            open.extend(next.map(|ends| ends.1).filter(|next| found.insert(*next)));
+        }
+    }
+    found
 }
 
 /// The tree of greatest total weight.

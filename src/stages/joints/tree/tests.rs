@@ -99,3 +99,26 @@ fn the_number_of_threads_changes_no_bit() {
     };
     assert_eq!(on(1), on(3));
 }
+
+#[test]
+fn what_is_in_the_place_of_an_edge_is_counted_where_it_is_lacking() {
+    let tree_of = |pairs: &[(usize, usize)]| -> Vec<Edge> {
+        pairs.iter().map(|&(parent, child)| Edge { child, parent }).collect()
+    };
+    // 0 – 1 – 2 – 3. In half of the others 0 – 2 is in the place of 0 – 1, and in one 1 – 3 in that of 1 – 2.
+    let tree = tree_of(&[(0, 1), (1, 2), (2, 3)]);
+    let without_first = tree_of(&[(0, 2), (2, 1), (3, 2)]);
+    let without_second = tree_of(&[(0, 1), (1, 3), (2, 3)]);
+    let others = [
+        without_first.clone(),
+        without_first.clone(),
+        without_first,
+        tree.clone(),
+        tree.clone(),
+        without_second,
+    ];
+    assert_eq!(most_often_instead(&tree, 0, &others), Some((0, 2, 3)));
+    // 0 – 2 joins the two sides of 1 – 2, too, but beside it.
+    assert_eq!(most_often_instead(&tree, 1, &others), Some((1, 3, 1)));
+    assert_eq!(most_often_instead(&tree, 2, &others), None);
+}
