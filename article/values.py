@@ -282,7 +282,7 @@ def multiverse(published):
     for key, name in ANSWERS.items():
         certain = [row for row in questions if float(row.get(f"{name}_low", 0)) > 0]
         first = sorted(certain, key=lambda row: -float(row[name]))[:3]
-        named = [f"{asked(row)}, {share(row, name, f'{name}_low', f'{name}_high')}" for row in first]
+        named = [f"{asked(row)}, {share(row, name, f'{name}_low', f'{name}_high', 1)}" for row in first]
         value(f"asked-{key}", "; ".join(named) or "none yet", source)
     for at, row in enumerate(questions[:3], 1):
         value(f"question-{at}", asked(row), source)
@@ -301,9 +301,10 @@ QUESTIONS = {
 }
 
 
-def share(row, middle="share", low="low", high="high"):
+def share(row, middle="share", low="low", high="high", digits=0):
     """A share with its interval."""
-    return f"{100 * float(row[middle]):.0f} % ({100 * float(row[low]):.0f} to {100 * float(row[high]):.0f})"
+    middle, low, high = (f"{100 * float(row[key]):.{digits}f}" for key in (middle, low, high))
+    return f"{middle} % ({low} to {high})"
 
 
 # ---- Fluid coupling, departures of the authors' code, time step

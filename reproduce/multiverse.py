@@ -41,7 +41,7 @@ MOVEMENTS = (64, 16, 20)
 # Groups of movements that the jackknife leaves out, one after the other.
 GROUPS = 16
 # Pairs of factors that have an interval and are on the page; and pairs of claims.
-PAIRS = 5
+PAIRS, CLAIM_PAIRS = 5, 3
 # Settings that are named of each answer, at most; and those whose options are on the page: the first ones of each answer about trees.
 NAMED, SHOWN = 3, {"whether a tree can be judged": 2, "the headline": 1, "dependence on d": 1, "dependence on p": 1}
 # Fewer eligible samples than this give a coarse rate.
@@ -437,9 +437,9 @@ def page(parts, shares, same, choices, claims, around, questions, pairs, errors)
         "",
         "## What does it depend on?",
         "",
-        "These settings explain most of an answer about trees in the [table below](#what-to-ask-the-authors): the first two of whether a tree can be",
-        "judged, and the first one of each other answer. Before each share stands the number of replications that can judge the claim. All",
-        "settings: [choices.csv](choices.csv).",
+        "These settings have the largest shares of the answers about trees in the [table below](#what-to-ask-the-authors), though some may be 0: the",
+        "first two of whether a tree can be judged, and the first one of each other answer. Before each share stands the number of replications",
+        "that can judge the claim. All settings: [choices.csv](choices.csv).",
         "",
         *table(["choice", "n", "tree accuracy: judged, holds", *(f"{name}: judged, holds" for name in TOGETHER)],
                by_choice([row for factor in deciding(questions) for row in choices if row["factor"] == factor])),
@@ -450,12 +450,13 @@ def page(parts, shares, same, choices, claims, around, questions, pairs, errors)
         "",
         *in_one(parts),
         "",
-        "These pairs of claims fall short of chance the most: in how many replications that can judge both each claim holds, and both do. The last",
-        "column is in how many both would hold if neither told anything of the other. All pairs: [trade-offs.csv](trade-offs.csv).",
+        "These pairs of claims hold together less often than by chance: in how many replications that can judge both each claim holds, and both do.",
+        "The last column is in how many both would hold if the claims were independent. The pairs are the first of 45, so part of their distance is",
+        "chance, too. All pairs: [trade-offs.csv](trade-offs.csv).",
         "",
         *table(["claim", "other claim", "can judge both", "the one holds", "the other holds", "both hold", "both by chance"],
                [[label(row["claim"]), label(row["other"]), row["judged"], row["holds"], row["other_holds"], row["both"], f"{float(row['expected']):.1f}"]
-                for row in claims[:PAIRS]]),
+                for row in claims[:CLAIM_PAIRS]]),
         "",
         "## Where does the published number lie?",
         "",
@@ -520,7 +521,7 @@ def wrapped(lines):
     """The text, its paragraphs in lines of at most 130 characters."""
     blocks, text = [], []
     for line in [*lines, ""]:
-        if line and line[0] not in "#|! ":
+        if line and line[0] not in "#|! -":
             text.append(line)
             continue
         if text:
@@ -567,9 +568,9 @@ def told(questions, answer):
 
 def deciding_in_words(questions):
     """What each answer depends on, as far as that is told, and which question would narrow all of them most."""
-    named = lambda row, answer: f"{quoted(row['factor'])} ({with_ends(row, answer)})"
+    named = lambda row, answer: f"{quoted(row['factor'])} ({with_ends(row, answer, 1)})"
     answers = {answer: [named(row, answer) for row in told(questions, answer)[:NAMED]] for answer in answers_in(questions)}
-    lines = ["What do these answers depend on? A share is that of an answer's variance which knowing the setting takes away (first-order Sobol index)."]
+    lines = ["What do these answers depend on? A share is how much the variance of an answer falls if the setting is known (first-order Sobol index)."]
     lines += [f"For {answer}: {', '.join(names)}." for answer, names in answers.items() if names]
     untold = [answer for answer, names in answers.items() if not names]
     if untold:
@@ -594,8 +595,8 @@ def deciding(questions):
 def least_judged(choices):
     """The options with which hardly any replication can judge the tree accuracy, in a sentence."""
     own = [row for row in choices if row["claim"] == HEADLINE and 20 * row["judged"] < row["n"]]
-    names = [f"{quoted(row['factor'] + ': ' + row['option'])} ({row['judged']} of {row['n']})" for row in own]
-    return [f"With these options, fewer than one replication in twenty can judge the tree accuracy: {', '.join(names)}."] if names else []
+    lines = [f"- {quoted(row['factor'] + ': ' + row['option'])}: {row['judged']} of {row['n']}" for row in own]
+    return ["With these options, fewer than one replication in twenty can judge the tree accuracy:", "", *lines] if lines else []
 
 
 def in_one(parts):
@@ -605,8 +606,9 @@ def in_one(parts):
     for name, part in parts.items():
         if len(part):
             counts = trade_offs.together(part, claims)
-            lines.append(f"Of {names[name]} ({len(part)}), {(counts == counts.max()).sum()} hold {counts.max()} of the {len(claims)} scored claims at "
-                         "once, and none holds more.")
+            best = (counts == counts.max()).sum()
+            lines.append(f"Of {names[name]} ({len(part)}), {best} {'has' if best == 1 else 'have'} {counts.max()} of the {len(claims)} scored claims "
+                         "at once, and none has more.")
     return lines
 
 

@@ -24,6 +24,7 @@ import multiverse  # noqa: E402
 import promising  # noqa: E402
 import replications  # noqa: E402
 import surrogate  # noqa: E402
+import trade_offs  # noqa: E402
 
 
 @pytest.fixture(scope="module")
@@ -164,6 +165,27 @@ def test_a_climb_ends_where_no_change_of_a_choice_predicts_more(part):
     # What an option overrides has no choice, and what nothing overrides has one.
     hidden = [other for at, option in enumerate(top) for other in space.overrides[at][option]]
     assert set(np.flatnonzero(top == surrogate.OVERRIDDEN)) == set(hidden)
+
+
+def test_the_design_of_the_most_promising_has_the_default_and_each_of_them(part):
+    chosen = surrogate.Chosen(part.codes, promising.scores(part), part.movements, 0)
+    space = promising.Space(part)
+    design = tomllib.loads(promising.design(space, [(part.codes[0], 0.5), (part.codes[1], 0.4)], chosen, len(part)))
+    names = {one["name"]: one["settings"] for one in design["configuration"]}
+    assert list(names) == ["default", "candidate 1", "candidate 2"] and names["default"] == {}
+    written = dict(replications.flat(names["candidate 1"]))
+    assert written == replications.settings(space.factors, part.codes[0])
+    assert 0.8 in design["settings"]["experiment"]["coordinations"] and 15 in design["settings"]["experiment"]["dimensions"]
+
+
+def test_claims_that_exclude_each_other_fall_short_of_chance():
+    made = type("Made", (), {})()
+    made.judged = {name: np.array([True] * 6 + [False] * 2) for name in "abc"}
+    made.holds = {name: np.array(list(holds)) == "1" for name, holds in {"a": "11100011", "b": "00011111", "c": "10110100"}.items()}
+    assert trade_offs.together(made, "abc").tolist() == [2, 1, 2, 2, 1, 2, 0, 0]
+    first, *_, last = trade_offs.pairs(made, "abc")
+    assert first == {"claim": "a", "other": "b", "judged": 6, "holds": 3, "other_holds": 3, "both": 0, "expected": "1.50"}
+    assert float(last["expected"]) == 2 == last["both"]
 
 
 def test_the_explorer_predicts_what_the_surrogate_predicts(part, tmp_path):
