@@ -10,7 +10,7 @@ use crate::stages::tree::Edge;
 
 /// Sensors that a part should have, of which about half feel something at a time (docs/own-data.md). None of 49 calibration recordings whose
 /// trees were right had a part of fewer (revision 32a953b).
-pub(super) const ENOUGH_SENSORS: usize = 16;
+const ENOUGH_SENSORS: usize = 16;
 /// Bootstrap support from which on a joint counts as certain, given the parts.
 pub(crate) const SURE: f64 = 0.95;
 /// If the only part has a larger mean residual, one rigid motion does not explain it.
@@ -73,14 +73,13 @@ impl fmt::Display for Doubt {
             }
             Self::Joint { joint, support, instead } => {
                 let Edge { child, parent } = joint;
-                // Rounded down, so that it is below the limit.
-                let percent = |share: &f64| (100.0 * share).floor();
-                write!(f, "joint {child}–{parent} is uncertain (support {} %)", percent(support))?;
+                // With a decimal, so that it is below the limit.
+                write!(f, "joint {child}–{parent} is uncertain (support {:.1} %)", 100.0 * support)?;
                 match instead {
                     Some(Rival { part, other, support }) => write!(
                         f,
-                        ": it may be {part}–{other} instead ({} %); record longer, with these parts moving against each other",
-                        percent(support)
+                        ": it may be {part}–{other} instead ({:.1} %); record longer, with these parts moving against each other",
+                        100.0 * support
                     ),
                     None => f.write_str("; record longer"),
                 }
@@ -96,22 +95,13 @@ impl fmt::Display for Doubt {
             }
             Self::Sensors { count, times } => write!(
                 f,
-                "{count} {} may be on another part: the next best one leaves at most {times:.0} times as much",
-                plural(*count)
+                "sensors that may be on another part: {count}; the next best one leaves at most {times:.0} times as much"
             ),
             Self::OnlyByJoints(count) => {
-                write!(f, "{count} {} on a part only because of its joints (residual 0)", are(*count))
+                write!(f, "sensors that are on a part only because of its joints (residual 0): {count}")
             }
         }
     }
-}
-
-fn plural(count: usize) -> &'static str {
-    if count == 1 { "sensor" } else { "sensors" }
-}
-
-fn are(count: usize) -> &'static str {
-    if count == 1 { "sensor is" } else { "sensors are" }
 }
 
 /// What parts and joints leave open.

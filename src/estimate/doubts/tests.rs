@@ -61,8 +61,8 @@ fn small_parts_and_sensors_that_another_part_explains_are_counted() {
         found,
         [
             "part 1, the first of 2 such parts, has 15 sensors; 16 and more are needed to rely on a part",
-            "2 sensors may be on another part: the next best one leaves at most 5 times as much",
-            "1 sensor is on a part only because of its joints (residual 0)",
+            "sensors that may be on another part: 2; the next best one leaves at most 5 times as much",
+            "sensors that are on a part only because of its joints (residual 0): 1",
         ]
     );
 }
@@ -72,10 +72,10 @@ fn an_uncertain_joint_is_named_with_what_may_be_in_its_place() {
     let mut joints = joined(3, &[(0, 1, 0.99, 1.0, true), (1, 2, 0.99, 0.9475, true)]);
     assert_eq!(
         said(&parts(&[16; 3], &[]), &joints),
-        ["joint 2–1 is uncertain (support 94 %); record longer"]
+        ["joint 2–1 is uncertain (support 94.8 %); record longer"]
     );
     joints.rivals[1] = Some(Rival { part: 0, other: 2, support: 0.05 });
-    let text = "joint 2–1 is uncertain (support 94 %): it may be 0–2 instead (5 %); record longer, with these parts moving against each other";
+    let text = "joint 2–1 is uncertain (support 94.8 %): it may be 0–2 instead (5.0 %); record longer, with these parts moving against each other";
     assert_eq!(said(&parts(&[16; 3], &[]), &joints), [text]);
 }
 
