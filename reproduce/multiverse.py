@@ -561,7 +561,7 @@ def answer(whole, own, questions):
 
 
 def told(questions, answer):
-    """The settings of which an answer depends for certain, the most important first."""
+    """The settings that an answer depends on for certain, the most important first."""
     certain = [row for row in questions if float(row[f"{answer}_low"]) > 0]
     return sorted(certain, key=lambda row: -float(row[answer]))
 
@@ -593,7 +593,7 @@ def deciding(questions):
 
 
 def least_judged(choices):
-    """The options with which hardly any replication can judge the tree accuracy, in a sentence."""
+    """The options with which hardly any replication can judge the tree accuracy, in a list."""
     own = [row for row in choices if row["claim"] == HEADLINE and 20 * row["judged"] < row["n"]]
     lines = [f"- {quoted(row['factor'] + ': ' + row['option'])}: {row['judged']} of {row['n']}" for row in own]
     return ["With these options, fewer than one replication in twenty can judge the tree accuracy:", "", *lines] if lines else []
