@@ -100,10 +100,13 @@ def influence(can_be_set):
         table.append(f"| {name} | `{value}` | {' | '.join(cells or ['–', '–'])} | {said} |")
     return [
         f"`reproduce/influence.py` halved and doubled each, all others as they are (revision {revisions(default)}), on calibration data:",
-        f"{'; '.join(f'{name} (n = {count})' for name, count in data.items())}. With the defaults, {right(default)} of {len(default)} trees are",
-        f"right, and the adjusted Rand index is {index(default):.3f} on average. Each cell has the value, how many trees are right, in",
-        "brackets how many became wrong (−) and right (+), and the mean index.",
-        f"{decisive} of the {counted} parameters that were tried change whether any tree is right.",
+        "",
+        *(f"- {name} (n = {count})" for name, count in data.items()),
+        "",
+        f"With the defaults, {right(default)} of {len(default)} trees are right, and the adjusted Rand index is {index(default):.3f} on average. Each",
+        "cell has the value, how many trees are right, in brackets how many became wrong (−) and right (+), and the mean index.",
+        f"{decisive} of the {counted} parameters that were tried change whether any tree is right."
+        + (" The others have not been tried yet." if counted < len(can_be_set) else ""),
         "",
         "| parameter | default | halved | doubled | what it is |",
         "|---|---|---|---|---|",

@@ -3,7 +3,7 @@
 
 Simulates each body of bodies/ at p = 0.5, for 100 s without noise and for 1,000 s with some, estimates it with ten repeats, and counts
 how often sensors, parts and joints are right, by the share of repeats that found them again. Writes repeats.csv and README.md into the
-folder of --out, which is docs/shown/repeats. Needs Python 3.11 and NumPy. Takes about half an hour on two cores; a run that was stopped
+folder of --out, which is docs/shown/repeats. Needs Python 3.11 and NumPy. Takes one to two hours on two cores; a run that was stopped
 continues. Status: 0, or 2 on an error.
 """
 
