@@ -4,7 +4,7 @@ docs/shown/rhythmic, docs/shown/recordings, docs/shown/robots and docs/shown/box
 import json
 import tomllib
 
-from estimated import ROOT, USES, interval, read, revisions, trees_right, wilson
+from estimated import ROOT, USES, interval, is_alarm, read, revisions, trees_right, wilson
 
 SHOWN = ROOT / "docs" / "shown"
 # s: one sample, and how long a joint has one target or is locked (bodies.toml).
@@ -23,15 +23,14 @@ def tables():
 
 def summary():
     """What was held out, a row for each kind of data."""
-    bodies, gaits = (read(SHOWN / folder / "recordings.csv") for folder in ("bodies", "rhythmic"))
+    bodies = read(SHOWN / "bodies" / "recordings.csv")
     recordings, robots, boxes = of_use("held out", shown("recordings")), of_use("held out", moved_robots()), shown("boxes")
-    changing = [row for row in gaits if row["kind"] == "changing-gaits"]
     counts = [int(row["samples"]) for row in recordings]
     of_study, of_gaits = (run_of(folder)["revision"][:7] for folder in ("bodies", "rhythmic"))
     rows = [
         ("[15 bodies](shown/bodies/README.md), random movement", "100,000", of(bodies, 100_000, 0.0), of_study),
         ("the same, noise of 10 % of the root mean square", "100,000", of(bodies, 100_000, 0.1), of_study),
-        ("the same bodies swim in [gaits that change](estimate.md#rhythmic-movement)", "10,000", changing, of_gaits),
+        ("the same bodies swim in [gaits that change](estimate.md#rhythmic-movement)", "10,000", swum("changing-gaits"), of_gaits),
         ("[movements](#recorded-movements) recorded by others", f"{min(counts)} to {max(counts):,}", recordings, revisions(recordings)),
         ("[robots of boxes](shown/boxes/README.md), random movement", "20,000", boxes, revisions(boxes)),
         ("[robots as published](shown/robots/README.md), random movement", "100,000", robots, revisions(robots)),
@@ -45,17 +44,15 @@ def summary():
 def goals():
     """What was aimed at, what was reached on held-out data, and what fails."""
     bodies, edges = (read(SHOWN / "bodies" / f"{name}.csv") for name in ("recordings", "edges"))
-    gaits = [row for row in read(SHOWN / "rhythmic" / "recordings.csv") if row["kind"] == "changing-gaits"]
+    gaits = swum("changing-gaits")
     moved, robots, alarms = of_use("held out", shown("recordings")), of_use("held out", moved_robots()), shown("alarm")
     index = sum(float(row["ari"]) for row in moved) / len(moved)
-    sure = [row for row in edges if float(row["support"]) >= 0.95]
-    groups = [(kind, p, [row for row in of(sure, *kind) if row["coordination"] == p])
-              for kind in kinds(bodies) for p in sorted({row["coordination"] for row in edges})]
-    (samples, noise), p, worst = min(groups, key=lambda group: sum(row["right"] == "true" for row in group[2]) / len(group[2]))
+    share = lambda rows: sum(row["right"] == "true" for row in rows) / len(rows)
+    (samples, _, p), worst = min(certain_edges(bodies, edges).items(), key=lambda group: share(group[1]))
     short = lambda p: [row for row in of(bodies, 1000, 0.0) if float(row["coordination"]) == p]
     def told(truth):
-        own = [row["fit"] for row in alarms if row["truth"] == truth]
-        return interval(sum(fit in ("does not fit", "refused") for fit in own), len(own))
+        own = [row for row in alarms if row["truth"] == truth]
+        return interval(sum(map(is_alarm, own)), len(own))
 
     tree = lambda rows: rate(rows, "tree_right", f"; n = {len(rows):,}")
     trunk = "joints at the trunk, above all in short recordings: an arm is joined to the other one. A skin that feels how the trunk turns would tell"
@@ -79,6 +76,11 @@ def goals():
 def shown(name):
     """The rows of a table in docs/shown."""
     return read(SHOWN / name / f"{name}.csv")
+
+
+def swum(kind):
+    """The rhythmic recordings of a kind."""
+    return [row for row in read(SHOWN / "rhythmic" / "recordings.csv") if row["kind"] == kind]
 
 
 def of_use(use, rows):
@@ -111,12 +113,11 @@ def of_bodies():
 
 def of_rhythmic_bodies():
     source = made("rhythmic", "bodyschema bodies --design reproduce/rhythmic-bodies.toml --out rhythmic")
-    recordings = read(SHOWN / "rhythmic" / "recordings.csv")
     lines = ["| movement | n | parts right | tree right | tree right, true parts given |", "|---|---|---|---|---|"]
     for name, kind in [("one gait", "one-gait"), ("gaits that change", "changing-gaits")]:
-        own = [row for row in recordings if row["kind"] == kind]
+        own = swum(kind)
         lines.append(f"| {' | '.join([name, str(len(own)), *rates(own)])} |")
-    wrong = [row for row in recordings if row["kind"] == "changing-gaits" and row["tree_right"] != "true"]
+    wrong = [row for row in swum("changing-gaits") if row["tree_right"] != "true"]
     own = sum(row["parts_right"] == "true" for row in wrong)
     told = f"Of the {len(wrong)} wrong trees in gaits that change, {own} have the right parts."
     return {("docs/estimate.md", "rhythmic"): [*lines, "", f"{told} {source}"]}
@@ -232,13 +233,19 @@ def sure(recordings, edges):
     """How often edges with a support of 95 % and more are right, whatever the parts, by length, noise and p."""
     coordinations = sorted({row["coordination"] for row in edges}, key=float)
     lines = [f"| T | noise | {' | '.join(f'p = {float(p):g}' for p in coordinations)} |", f"|---|---|{'---|' * len(coordinations)}"]
-    certain = [row for row in edges if float(row["support"]) >= 0.95]
+    groups = certain_edges(recordings, edges)
     for samples, noise in kinds(recordings):
-        rows = of(certain, samples, noise)
-        own = [[row for row in rows if row["coordination"] == p] for p in coordinations]
+        own = [groups[samples, noise, p] for p in coordinations]
         cells = [rate(one, "right", f"; n = {len(one):,}") for one in own]
         lines.append(f"| {samples:,} | {noise:g} | {' | '.join(cells)} |")
     return lines
+
+
+def certain_edges(recordings, edges):
+    """The edges with a support of 95 % and more, by length, noise and p."""
+    certain = [row for row in edges if float(row["support"]) >= 0.95]
+    return {(*kind, p): [row for row in of(certain, *kind) if row["coordination"] == p]
+            for kind in kinds(recordings) for p in sorted({row["coordination"] for row in edges})}
 
 
 def supported(recordings, edges, ends, noise, parts_right):

@@ -20,7 +20,7 @@ try:
 except ModuleNotFoundError:
     sys.exit("alarm: needs NumPy")
 
-from estimated import ROOT, fail, interval, noisy, read, resumed, revision, revisions, run, tried
+from estimated import ROOT, fail, interval, is_alarm, noisy, read, resumed, revision, revisions, run, tried
 
 SEED, SECONDS, INTERVAL = 4980000, 1000, 0.1  # s
 SETTINGS = "physics.step = 0.02\nmotion = { coordination = 0.5, epoch = 250 }\n"
@@ -169,10 +169,6 @@ def rotations(quaternions):
             [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
             [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)]]
     return np.moveaxis(np.array(rows), [0, 1], [-2, -1])
-
-
-def is_alarm(row):
-    return row["fit"] in ("does not fit", "refused")
 
 
 def page(rows):

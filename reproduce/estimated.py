@@ -130,6 +130,11 @@ def trees_right(rows, wrong=0):
     return interval(sum(row["tree_right"] == "true" for row in rows), len(rows) + wrong) if rows else "–"
 
 
+def is_alarm(row):
+    """Whether `estimate` said that rigid parts do not fit."""
+    return row["fit"] in ("does not fit", "refused")
+
+
 def outcome(row):
     """Cells of a table: true parts, parts found, adjusted Rand index, joints right, and the tree."""
     tree = "right" if row["tree_right"] == "true" else "wrong"

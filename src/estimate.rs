@@ -146,7 +146,11 @@ impl Fit {
             _ if explained >= GOOD && is_loop && !is_stroked => Some(LOOPED),
             _ if explained >= GOOD && comes_back && !is_stroked => Some(SIMILARITY),
             Verdict::Doubtful if explained >= GOOD && is_one_part => Some(ONE_PART),
-            Verdict::Doubtful if explained >= GOOD && recording.tactile.samples >= SHORT => Some(SMALL_PART),
+            Verdict::Doubtful
+                if explained >= GOOD && recording.tactile.samples >= SHORT && has_small_part =>
+            {
+                Some(SMALL_PART)
+            }
             _ => Some(cause(&recording.tactile, is_noisy, is_stroked)),
         };
         Self { verdict, explained, novelty, cause }

@@ -65,9 +65,16 @@ fn normal([a, b, c]: &[Column<f64>; 3]) -> Column<f64> {
     (b - a).cross(&(c - a))
 }
 
-/// Whether what is placed so is a mirror image. Its triangles must then be turned round, so that they look outward.
-fn is_mirrored(place: &Matrix4<f64>) -> bool {
-    place.fixed_view::<3, 3>(0, 0).determinant() < 0.0
+/// Turns triangles round, so that what looked inward looks outward.
+fn turn_round(triangles: &mut [[Column<f64>; 3]]) {
+    triangles.iter_mut().for_each(|[_, b, c]| std::mem::swap(b, c));
+}
+
+/// Turns placed triangles round if the place makes a mirror image of them.
+fn look_outward(triangles: &mut [[Column<f64>; 3]], place: &Matrix4<f64>) {
+    if place.fixed_view::<3, 3>(0, 0).determinant() < 0.0 {
+        turn_round(triangles);
+    }
 }
 
 impl Mesh {
@@ -126,7 +133,7 @@ impl Mesh {
         let stretch = |corner: Column<f64>| corner.component_mul(&Column::new(x, y, z));
         let mut mesh = Self::new(self.triangles.into_iter().map(|corners| corners.map(stretch)).collect())?;
         if mesh.signed_volume() < 0.0 {
-            mesh.triangles.iter_mut().for_each(|[_, b, c]| std::mem::swap(b, c));
+            turn_round(&mut mesh.triangles);
         }
         Ok(mesh)
     }

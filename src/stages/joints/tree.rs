@@ -1,13 +1,14 @@
 //! Estimate the tree over parts, the tree of most information between them (Chow and Liu 1968), and the bootstrap support of its edges
 //! (Felsenstein 1985).
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use nalgebra::DMatrix;
 use rand::{Rng, RngExt};
 use rayon::prelude::*;
 
 use super::moments::{Dependence, Moments};
+use crate::numerics::partition::Connected;
 use crate::stages::parameters::Parameters;
 use crate::stages::rigid_parts::{MAX_RANK, MotionSubspace, motions_of_parts};
 use crate::stages::sense::Tactile;
@@ -184,26 +185,17 @@ fn labelled(tree: &[Edge], labels: &[usize]) -> Vec<Edge> {
 fn most_often_instead(tree: &[Edge], at: usize, others: &[Vec<Edge>]) -> Option<(usize, usize, usize)> {
     let ends = |edge: &Edge| (edge.child.min(edge.parent), edge.child.max(edge.parent));
     let own = ends(&tree[at]);
-    let rest: Vec<Edge> = tree.iter().copied().filter(|edge| ends(edge) != own).collect();
-    let side = reached(&rest, own.0);
+    let mut connected = Connected::new(tree.len() + 1);
+    tree.iter().filter(|edge| ends(edge) != own).for_each(|edge| {
+        connected.connect(edge.child, edge.parent);
+    });
+    let side: Vec<usize> = (0..=tree.len()).map(|node| connected.representative(node)).collect();
     let mut times: BTreeMap<(usize, usize), usize> = BTreeMap::new();
     for other in others.iter().filter(|other| other.iter().all(|edge| ends(edge) != own)) {
-        let crosses = |edge: &&Edge| side.contains(&edge.child) != side.contains(&edge.parent);
+        let crosses = |edge: &&Edge| side[edge.child] != side[edge.parent];
         other.iter().filter(crosses).for_each(|edge| *times.entry(ends(edge)).or_default() += 1);
     }
     times.into_iter().rev().max_by_key(|(_, times)| *times).map(|((a, b), times)| (a, b, times))
-}
-
-/// The nodes that some edges connect with this one, itself included.
-fn reached(edges: &[Edge], node: usize) -> BTreeSet<usize> {
-    let (mut found, mut open) = (BTreeSet::from([node]), vec![node]);
-    while let Some(own) = open.pop() {
-        for &Edge { child, parent } in edges {
-            let next = [(child, parent), (parent, child)].into_iter().filter(|ends| ends.0 == own);
-            open.extend(next.map(|ends| ends.1).filter(|next| found.insert(*next)));
-        }
-    }
-    found
 }
 
 /// The tree of greatest total weight.

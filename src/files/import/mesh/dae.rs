@@ -8,7 +8,7 @@ use std::collections::HashMap;
 use nalgebra::{Matrix4, Point3, Rotation3, Unit, Vector3 as Column};
 use roxmltree::Node;
 
-use super::{MOST_TRIANGLES, is_mirrored, too_many};
+use super::{MOST_TRIANGLES, look_outward, too_many};
 use crate::files::import::document::Wrong;
 use crate::files::import::document::parsed;
 
@@ -141,7 +141,7 @@ impl<'a> Elements<'a> {
         triangles: &mut Vec<[Column<f64>; 3]>,
     ) -> Result<(), Wrong> {
         let Some(mesh) = below(geometry, "mesh") else { return Ok(()) };
-        let is_mirrored = is_mirrored(pose);
+        let first = triangles.len();
         for primitive in mesh.children().filter(Node::is_element) {
             let kind = primitive.tag_name().name();
             if !["triangles", "polylist", "polygons", "tristrips", "trifans"].contains(&kind) {
@@ -183,11 +183,12 @@ impl<'a> Elements<'a> {
                         rest.split_at_checked(length).ok_or("has fewer corners than it says")?;
                     rest = others;
                     for at in 2..face.len() {
-                        let [mut a, mut b] = if kind == "tristrips" { [at - 2, at - 1] } else { [0, at - 1] };
-                        // Every other triangle of a strip goes round the other way, and so do all of a mirror image.
-                        if is_mirrored != (kind == "tristrips" && at % 2 == 1) {
-                            (a, b) = (b, a);
-                        }
+                        let [a, b] = if kind == "tristrips" {
+                            // Every other triangle of a strip goes round the other way.
+                            if at % 2 == 0 { [at - 2, at - 1] } else { [at - 1, at - 2] }
+                        } else {
+                            [0, at - 1]
+                        };
                         triangles.push([corner(face[a])?, corner(face[b])?, corner(face[at])?]);
                     }
                     if triangles.len() > MOST_TRIANGLES {
@@ -196,6 +197,7 @@ impl<'a> Elements<'a> {
                 }
             }
         }
+        look_outward(&mut triangles[first..], pose);
         Ok(())
     }
 

@@ -11,7 +11,7 @@ use base64::engine::general_purpose::STANDARD;
 use nalgebra::{Matrix4, Quaternion, UnitQuaternion, Vector3 as Column};
 use serde::Deserialize;
 
-use super::{MOST_TRIANGLES, is_mirrored, too_many};
+use super::{MOST_TRIANGLES, look_outward, too_many};
 use crate::files::import::document::Wrong;
 
 /// Types of numbers in buffers.
@@ -222,7 +222,6 @@ impl Reader<'_> {
     /// Adds the triangles of a mesh at a place.
     fn add(&mut self, mesh: usize, place: &Matrix4<f64>) -> Result<(), Wrong> {
         let mesh = self.document.meshes.get(mesh).ok_or("has a node with a mesh that is not there")?;
-        let is_mirrored = is_mirrored(place);
         let mut new = Vec::new();
         for primitive in &mesh.primitives {
             let mode = primitive.mode.unwrap_or(TRIANGLES);
@@ -250,17 +249,15 @@ impl Reader<'_> {
                 corner.ok_or_else(|| "has a triangle without a corner".to_owned())
             };
             for at in 0..count {
-                let [a, mut b, mut c] = match mode {
+                let [a, b, c] = match mode {
                     STRIP => [at, at + 1 + at % 2, at + 2 - at % 2],
                     FAN => [0, at + 1, at + 2],
                     _ => [3 * at, 3 * at + 1, 3 * at + 2],
                 };
-                if is_mirrored {
-                    (b, c) = (c, b);
-                }
                 new.push([corner(a)?, corner(b)?, corner(c)?]);
             }
         }
+        look_outward(&mut new, place);
         self.triangles.extend(new);
         Ok(())
     }
