@@ -93,6 +93,8 @@ def influence(can_be_set):
     decisive, counted, table = 0, 0, []
     for name, value, said in can_be_set:
         tried = sorted((float(other), other, rows[key, other]) for key, other in rows if key == name)
+        # Of a study that goes on, a parameter may have one of its two values.
+        tried = tried if len(tried) == 2 else []
         outcomes = [outcome(own, default) for _, _, own in tried]
         cells = [f"{other}: {said_of}, {index(own):.3f}" for (_, other, own), said_of in zip(tried, outcomes)]
         counted += bool(tried)
