@@ -63,7 +63,8 @@ impl Completion {
             }
             loadings = orthonormal(next, &mut blocks);
         }
-        let velocity = |t: usize, sensor: usize| f64::from(blocks[t / BLOCK].filled(t % BLOCK, sensor, 0.0));
+        let filled = in_order(&blocks, |block| block.filled(0.0));
+        let velocity = |t: usize, sensor: usize| f64::from(filled[t / BLOCK][(t % BLOCK, sensor)]);
         Self {
             velocities: Mat::from_fn(samples, sensors, velocity),
             affinities: affinities(&blocks, loadings.as_ref(), ridge),
@@ -109,15 +110,18 @@ impl Block {
     }
 
     /// A root where it is felt, and else the extrapolated estimate, which is no more than the root; any, where this is missing.
-    #[inline]
-    fn filled(&self, t: usize, sensor: usize, step: f32) -> f32 {
-        let (root, estimate) = (self.roots[(t, sensor)], self.estimate[(t, sensor)]);
-        let ahead = estimate + step * (estimate - self.last[(t, sensor)]);
-        if root >= self.thresholds[t] { root } else { ahead.min(root) }
-    }
-
-    fn all_filled(&self, step: f32) -> Mat<f32> {
-        Mat::from_fn(self.roots.nrows(), self.roots.ncols(), |t, sensor| self.filled(t, sensor, step))
+    fn filled(&self, step: f32) -> Mat<f32> {
+        let mut filled = Mat::zeros(self.roots.nrows(), self.roots.ncols());
+        for sensor in 0..self.roots.ncols() {
+            let estimates = self.estimate.col_as_slice(sensor).iter().zip(self.last.col_as_slice(sensor));
+            let roots = self.roots.col_as_slice(sensor).iter().zip(&self.thresholds);
+            let to = filled.col_as_slice_mut(sensor).iter_mut();
+            for ((to, (estimate, last)), (root, least)) in to.zip(estimates).zip(roots) {
+                let ahead = estimate + step * (estimate - last);
+                *to = if root >= least { *root } else { ahead.min(*root) };
+            }
+        }
+        filled
     }
 
     /// Replaces the estimate by the product of both factors.
@@ -167,7 +171,7 @@ fn updated(blocks: &mut [Block], loadings: MatRef<'_, f32>, step: f32, share: f6
     let samples: usize = blocks.iter().map(|block| block.roots.nrows()).sum();
     let shrink = (1.0 / (1.0 + share)) as f32;
     let sums = |block: &mut Block| {
-        let filled = block.all_filled(step);
+        let filled = block.filled(step);
         block.scores = times(filled.as_ref(), loadings) * faer::Scale(shrink);
         (
             times(filled.transpose(), block.scores.as_ref()),

@@ -6,32 +6,51 @@ use nalgebra::SMatrix;
 use super::factorisation::MAX_RANK;
 use super::roots::Roots;
 
+/// Numbers on the diagonal of a matrix and below it, row by row.
+const TRIANGLE: usize = MAX_RANK * (MAX_RANK + 1) / 2;
+
 /// ln det(I + scale · Σ c cᵀ cov(w)) on average over samples, where the sum is over the roots at a sample, and one that is not felt
 /// counts `censored`, and one that is missing nothing. In: the roots of some sensors, and their c, for which each component of w has a variance of 1.
 pub(super) fn log_determinant(roots: &Roots, whitened: &Mat<f64>, scale: f64, censored: f64) -> f64 {
-    let k = whitened.ncols();
-    let row = |sensor| std::array::from_fn(|at| if at < k { whitened[(sensor, at)] } else { 0.0 });
-    let rows: Vec<[f64; MAX_RANK]> = (0..whitened.nrows()).map(row).collect();
+    let [felt, other] = [scale, scale * censored].map(|weight| terms(whitened, weight));
     let of_sample = |t: usize| {
-        let mut matrix = [[0.0; MAX_RANK]; MAX_RANK];
-        for (sensor, c) in rows.iter().enumerate() {
+        let mut sums = [0.0; TRIANGLE];
+        for (sensor, (felt, other)) in felt.iter().zip(&other).enumerate() {
             let root = roots.values[(t, sensor)];
-            let told = if root.is_nan() { 0.0 } else { censored };
-            let weight = if root >= roots.thresholds[t] { scale } else { scale * told };
-            for (i, row) in matrix.iter_mut().enumerate() {
-                (0..=i).for_each(|j| row[j] += weight * c[i] * c[j]);
+            if !root.is_nan() {
+                let terms = if root >= roots.thresholds[t] { felt } else { other };
+                sums.iter_mut().zip(terms).for_each(|(sum, term)| *sum += term);
             }
         }
-        log_determinant_with_identity(matrix)
+        log_determinant_with_identity(&sums)
     };
     (0..roots.samples()).map(of_sample).sum::<f64>() / roots.samples() as f64
 }
 
-/// ln det(I + A) of a positive semidefinite A, of which the lower triangle is given.
-fn log_determinant_with_identity(matrix: [[f64; MAX_RANK]; MAX_RANK]) -> f64 {
-    let matrix =
-        SMatrix::identity() + SMatrix::<f64, MAX_RANK, MAX_RANK>::from_fn(|i, j| matrix[i.max(j)][i.min(j)]);
-    matrix.cholesky().map_or(f64::INFINITY, |factor| factor.ln_determinant())
+/// The triangle of weight · c cᵀ for each sensor.
+fn terms(whitened: &Mat<f64>, weight: f64) -> Vec<[f64; TRIANGLE]> {
+    let of_sensor = |sensor| {
+        let mut terms = [0.0; TRIANGLE];
+        // A motion on its way has one component more, and its description length is not asked for.
+        for i in 0..whitened.ncols().min(MAX_RANK) {
+            for j in 0..=i {
+                terms[place(i, j)] = weight * whitened[(sensor, i)] * whitened[(sensor, j)];
+            }
+        }
+        terms
+    };
+    (0..whitened.nrows()).map(of_sensor).collect()
+}
+
+/// Where a triangle has an element of row i and column j ≤ i.
+fn place(i: usize, j: usize) -> usize {
+    i * (i + 1) / 2 + j
+}
+
+/// ln det(I + A) of a positive semidefinite A, of which the triangle is given.
+fn log_determinant_with_identity(triangle: &[f64; TRIANGLE]) -> f64 {
+    let matrix = SMatrix::<f64, MAX_RANK, MAX_RANK>::from_fn(|i, j| triangle[place(i.max(j), i.min(j))]);
+    (SMatrix::identity() + matrix).cholesky().map_or(f64::INFINITY, |factor| factor.ln_determinant())
 }
 
 #[cfg(test)]
@@ -48,7 +67,10 @@ mod tests {
         assert!((found - expected).abs() < 1e-12, "{found} {expected}");
         // A = x xᵀ + 3 y yᵀ for orthogonal x and y.
         let (x, y) = ([1.0, 2.0, 0.0, 0.0, 0.0, 0.0], [2.0, -1.0, 0.0, 0.0, 1.0, 0.0]);
-        let matrix = std::array::from_fn(|i| std::array::from_fn(|j| x[i] * x[j] + 3.0 * y[i] * y[j]));
-        assert!((log_determinant_with_identity(matrix) - (6.0_f64 * 19.0).ln()).abs() < 1e-12);
+        let mut triangle = [0.0; TRIANGLE];
+        for i in 0..MAX_RANK {
+            (0..=i).for_each(|j| triangle[place(i, j)] = x[i] * x[j] + 3.0 * y[i] * y[j]);
+        }
+        assert!((log_determinant_with_identity(&triangle) - (6.0_f64 * 19.0).ln()).abs() < 1e-12);
     }
 }

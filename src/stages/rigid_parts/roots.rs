@@ -250,7 +250,11 @@ pub(super) fn divide_rows(matrix: &mut Mat<f64>, divisors: &[f64]) {
 
 /// Some columns.
 pub(super) fn columns(matrix: &Mat<f64>, which: &[usize]) -> Mat<f64> {
-    Mat::from_fn(matrix.nrows(), which.len(), |row, at| matrix[(row, which[at])])
+    let mut some = Mat::zeros(matrix.nrows(), which.len());
+    for (at, &column) in which.iter().enumerate() {
+        some.col_as_slice_mut(at).copy_from_slice(matrix.col_as_slice(column));
+    }
+    some
 }
 
 /// Whether negative pressures are signal, not noise about 0.
