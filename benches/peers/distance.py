@@ -66,6 +66,21 @@ def command(tactile, levels, scheme, out):
     np.save(out, one_hot_metric(quantised(np.load(tactile), levels, scheme), levels))
 
 
+def load_seconds(tactile):
+    """Time of reading a file of pressures."""
+    start = time.perf_counter()
+    np.load(tactile)
+    return time.perf_counter() - start
+
+
+def quantise_seconds(tactile, levels, scheme):
+    """Time of quantising pressures that are read."""
+    pressures = np.load(tactile)
+    start = time.perf_counter()
+    quantised(pressures, levels, scheme)
+    return time.perf_counter() - start
+
+
 def sklearn_seconds(levels):
     """Time of mutual_info_score on PAIRS pairs of sensors, extrapolated to all pairs, on one core."""
     series = np.ascontiguousarray(symbols(levels).T)

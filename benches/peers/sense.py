@@ -1,0 +1,34 @@
+"""A trajectory of full size -> the time that NumPy takes for what src/stages/sense.rs does, in seconds.
+
+Run: pip install -r benches/peers/requirements.txt
+     python benches/peers/sense.py
+"""
+
+import time
+
+import numpy as np
+
+PARTS, SENSORS, SAMPLES, DENSITY = 5, 168, 100_000, 1010.0
+
+
+def felt(velocities, spins, places, normals):
+    """Equation 27: the pressure of the fluid on each sensor, from what its part does in its own frame, T x M."""
+    tactile = np.empty((len(velocities), len(velocities[0]) * len(places)), dtype=np.float32)
+    for part in range(PARTS):
+        # n . (v + w x r) = n . v + (r x n) . w
+        speeds = velocities[:, part] @ normals.T + spins[:, part] @ np.cross(places, normals).T
+        tactile[:, part * SENSORS : (part + 1) * SENSORS] = DENSITY * np.maximum(speeds, 0) ** 2
+    return tactile
+
+
+def seconds():
+    rng = np.random.default_rng(1)
+    velocities, spins = rng.normal(size=(2, SAMPLES, PARTS, 3))
+    places, normals = rng.normal(size=(2, SENSORS, 3))
+    start = time.perf_counter()
+    felt(velocities, spins, places, normals)
+    return time.perf_counter() - start
+
+
+if __name__ == "__main__":
+    print(f"{seconds():.3f} s")
