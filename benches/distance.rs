@@ -1,5 +1,5 @@
-//! Measure the stages from a synthetic trajectory of full size to the distances, and reading the pressures from a file, in seconds on
-//! all cores: `cargo bench --bench distance`. `benches/peers/distance.py` says what others take.
+//! Measure the stages from a synthetic trajectory of full size to the distances, in seconds on all cores: `cargo bench --bench distance`;
+//! with `-- TACTILE.npy` also reading and quantising that file. `benches/peers/distance.py` says what others take.
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -26,10 +26,11 @@ fn main() {
     let agent = Agent::new(&settings.agent, &settings.skin);
     let trajectory = wandering(agent.parts.len());
     let tactile = timed("sense", || sense(&agent, &trajectory, &settings.sense));
-    let folder = tempfile::tempdir().expect("there is room for a file");
-    let file = folder.path().join("tactile.npy");
-    npy::write_tactile(&file, &tactile).expect("the file can be written");
-    timed("read", || npy::read_tactile(&file).expect("the file can be read"));
+    if let Some(file) = std::env::args().find(|argument| argument.ends_with(".npy")) {
+        let felt = timed("read", || npy::read_tactile(file.as_ref()).expect("the file can be read"));
+        settings.quantise.levels = 8;
+        timed("quantise what was read, N = 8", || quantise(&felt, &settings.quantise));
+    }
     for levels in [4, 8, 16, 64, 256] {
         settings.quantise.levels = levels;
         let symbols = timed(&format!("quantise, N = {levels}"), || quantise(&tactile, &settings.quantise));

@@ -1,4 +1,5 @@
-"""Symbols of full size -> the time that NumPy and scikit-learn take for what src/stages/distance does, in seconds.
+"""Pressures and symbols of full size -> the time that NumPy takes to load, quantise and compare them, and scikit-learn to compare them, in
+seconds, as src/files, src/stages/quantise.rs and src/stages/distance do.
 
 Run: pip install -r benches/peers/requirements.txt
      python benches/peers/distance.py
@@ -7,7 +8,6 @@ Run: pip install -r benches/peers/requirements.txt
 import time
 
 import numpy as np
-import sklearn.metrics
 
 SENSORS, SAMPLES = 840, 100_000
 CHUNK = 20_000  # samples whose one-hot code is in memory at a time: 0.5 GB at N = 8
@@ -38,13 +38,7 @@ def one_hot_metric(series, levels):
 def numpy_seconds(levels, measurements=2):
     """Least time of the metric by a one-hot matrix product."""
     series = symbols(levels)
-
-    def measure():
-        start = time.perf_counter()
-        one_hot_metric(series, levels)
-        return time.perf_counter() - start
-
-    return min(measure() for _ in range(measurements))
+    return least(lambda: one_hot_metric(series, levels), measurements)
 
 
 def quantised(pressures, levels, scheme):
@@ -67,22 +61,29 @@ def command(tactile, levels, scheme, out):
 
 
 def load_seconds(tactile):
-    """Time of reading a file of pressures."""
-    start = time.perf_counter()
-    np.load(tactile)
-    return time.perf_counter() - start
+    """Least time of reading a file of pressures."""
+    return least(lambda: np.load(tactile))
 
 
 def quantise_seconds(tactile, levels, scheme):
-    """Time of quantising pressures that are read."""
+    """Least time of quantising pressures that are read."""
     pressures = np.load(tactile)
-    start = time.perf_counter()
-    quantised(pressures, levels, scheme)
-    return time.perf_counter() - start
+    return least(lambda: quantised(pressures, levels, scheme))
+
+
+def least(work, measurements=3):
+    def measure():
+        start = time.perf_counter()
+        work()
+        return time.perf_counter() - start
+
+    return min(measure() for _ in range(measurements))
 
 
 def sklearn_seconds(levels):
     """Time of mutual_info_score on PAIRS pairs of sensors, extrapolated to all pairs, on one core."""
+    import sklearn.metrics
+
     series = np.ascontiguousarray(symbols(levels).T)
     start = time.perf_counter()
     for pair in range(PAIRS):
@@ -94,7 +95,6 @@ if __name__ == "__main__":
     for levels in (4, 8):
         print(f"NumPy one-hot product, N = {levels}: {numpy_seconds(levels):.2f} s", flush=True)
         print(
-            f"scikit-learn mutual_info_score, N = {levels}: {sklearn_seconds(levels):.0f} s "
-            f"(extrapolated from {PAIRS} pairs)",
+            f"scikit-learn mutual_info_score, N = {levels}: {sklearn_seconds(levels):.0f} s " f"(extrapolated from {PAIRS} pairs)",
             flush=True,
         )

@@ -1,14 +1,15 @@
-"""Pressures -> the parts, as a user would write it who knows their number: NumPy and scikit-learn in place of `bodyschema estimate`.
+"""Pressures -> the parts. Who knows their number might write this in NumPy and scikit-learn, in place of `bodyschema estimate`.
 
 Run: pip install -r benches/peers/requirements.txt
      python benches/peers/estimate.py TACTILE.npy LABELS.csv
 
-Prints the adjusted Rand index of what it finds, without a word on the tree.
+Prints the adjusted Rand index of what it finds. It does not estimate the tree.
 """
 
 import sys
 
 import numpy as np
+import scipy.linalg
 import sklearn.cluster
 import sklearn.metrics
 
@@ -23,7 +24,7 @@ def completed(roots, rank):
     for _ in range(ITERATIONS):
         ahead = low + MOMENTUM * (low - before)
         filled = np.where(felt, roots, np.minimum(ahead, 0))
-        right = np.linalg.eigh(filled.T @ filled)[1][:, -rank:]
+        right = scipy.linalg.eigh(filled.T @ filled, subset_by_index=[len(filled.T) - rank, len(filled.T) - 1])[1]
         before, low = low, filled @ right @ right.T
     return right
 

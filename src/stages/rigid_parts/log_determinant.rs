@@ -31,7 +31,7 @@ pub(super) fn log_determinant(roots: &Roots, whitened: &Mat<f64>, scale: f64, ce
 fn terms(whitened: &Mat<f64>, weight: f64) -> Vec<[f64; TRIANGLE]> {
     let of_sensor = |sensor| {
         let mut terms = [0.0; TRIANGLE];
-        // A motion on its way has one component more, and its description length is not asked for.
+        // A motion that has one component more, on its way out of a minimum, is learned again without; no description length of it is used.
         for i in 0..whitened.ncols().min(MAX_RANK) {
             for j in 0..=i {
                 terms[place(i, j)] = weight * whitened[(sensor, i)] * whitened[(sensor, j)];
