@@ -9,7 +9,6 @@ Prints the adjusted Rand index of what it finds. It does not estimate the tree.
 import sys
 
 import numpy as np
-import scipy.linalg
 import sklearn.cluster
 import sklearn.metrics
 
@@ -24,7 +23,8 @@ def completed(roots, rank):
     for _ in range(ITERATIONS):
         ahead = low + MOMENTUM * (low - before)
         filled = np.where(felt, roots, np.minimum(ahead, 0))
-        right = scipy.linalg.eigh(filled.T @ filled, subset_by_index=[len(filled.T) - rank, len(filled.T) - 1])[1]
+        # All vectors, in parallel, take less time than the last ones alone by scipy.linalg.eigh.
+        right = np.linalg.eigh(filled.T @ filled)[1][:, -rank:]
         before, low = low, filled @ right @ right.T
     return right
 
