@@ -100,6 +100,8 @@ def influence(can_be_set):
         counted += bool(tried)
         decisive += any("(" in said_of for said_of in outcomes)
         table.append(f"| {name} | `{value}` | {' | '.join(cells or ['–', '–'])} | {said} |")
+    changed = collections.Counter(row["recording"] for own in rows.values() for row in differing(own, default))
+    most = changed.most_common(1)[0]
     return [
         f"`reproduce/influence.py` halved and doubled each, all others as they are (revision {revisions(default)}), on calibration data:",
         "",
@@ -109,6 +111,7 @@ def influence(can_be_set):
         "cell has the value, how many trees are right, in brackets how many became wrong (−) and right (+), and the mean index.",
         f"{decisive} of the {counted} parameters that were tried change whether any tree is right."
         + (" The others have not been tried yet." if counted < len(can_be_set) else ""),
+        f"Of all {sum(changed.values())} changes, {most[1]} are of one recording, {most[0]}.",
         "",
         "| parameter | default | halved | doubled | what it is |",
         "|---|---|---|---|---|",
@@ -116,10 +119,15 @@ def influence(can_be_set):
     ]
 
 
+def differing(own, default):
+    """The recordings of which the tree is right in one and not in the other."""
+    before = {(row["data"], row["recording"]): row["tree_right"] for row in default}
+    return [row for row in own if before[row["data"], row["recording"]] != row["tree_right"]]
+
+
 def outcome(own, default):
     """How many trees are right, and how many changed."""
-    before = {(row["data"], row["recording"]): row["tree_right"] for row in default}
-    changed = collections.Counter(row["tree_right"] for row in own if before[row["data"], row["recording"]] != row["tree_right"])
+    changed = collections.Counter(row["tree_right"] for row in differing(own, default))
     marks = [f"{sign}{changed[kind]}" for kind, sign in [("false", "−"), ("true", "+")] if changed[kind]]
     right = sum(row["tree_right"] == "true" for row in own)
     return f"{right} ({' '.join(marks)})" if marks else f"{right}"
