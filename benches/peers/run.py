@@ -72,9 +72,13 @@ def seconds(text, pattern, unit=1.0):
     return Cost(float(re.search(pattern, text)[1]) * unit)
 
 
+def python(module, call):
+    """A command that calls a function of one of the modules here."""
+    return sys.executable, "-c", f"import sys; sys.path.insert(0, {str(peers)!r}); import {module}; {call}"
+
+
 def peer(module, call, **environment):
-    code = f"import sys; sys.path.insert(0, {str(peers)!r}); import {module}; print({call})"
-    return Cost(float(output(sys.executable, "-c", code, **environment)))
+    return Cost(float(output(*python(module, f"print({call})"), **environment)))
 
 
 @functools.cache
@@ -85,8 +89,8 @@ def least(folder):
     return {name: min(float(value) for other, value in lines if other == name) for name, _ in lines}
 
 
-def floor(*names):
-    return lambda folder: sum(least(folder)[name] for name in names)
+def floor(name):
+    return lambda folder: least(folder)[name]
 
 
 def multiply_adds(count, cores):
@@ -108,26 +112,29 @@ def simulate(controller, *torque):
     return run
 
 
+def from_touch(folder, round, stage):
+    """Seconds of a stage from pressures to distances."""
+    return seconds(bench("distance", round, touch(folder)), rf"{stage}: ([\d.]+)")
+
+
 def sense(folder, round):
-    return seconds(bench("distance", round, touch(folder)), r"sense: ([\d.]+)"), peer("sense", "sense.seconds()")
+    return from_touch(folder, round, "sense"), peer("sense", "sense.seconds()")
 
 
 def distance(levels):
     def run(folder, round):
-        ours = seconds(bench("distance", round, touch(folder)), rf"distance, N = {levels}: ([\d.]+)")
-        return ours, peer("distance", f"distance.numpy_seconds({levels})")
+        return from_touch(folder, round, f"distance, N = {levels}"), peer("distance", f"distance.numpy_seconds({levels})")
 
     return run
 
 
 def quantise(folder, round):
-    ours = seconds(bench("distance", round, touch(folder)), r"quantise what was read, N = 8: ([\d.]+)")
+    ours = from_touch(folder, round, "quantise what was read, N = 8")
     return ours, peer("distance", f"distance.quantise_seconds({touch(folder)!r}, 8, {POOLED!r})")
 
 
 def read(folder, round):
-    ours = seconds(bench("distance", round, touch(folder)), r"read: ([\d.]+)")
-    return ours, peer("distance", f"distance.load_seconds({touch(folder)!r})")
+    return from_touch(folder, round, "read"), peer("distance", f"distance.load_seconds({touch(folder)!r})")
 
 
 @functools.cache
@@ -140,8 +147,7 @@ def whole(folder, levels, scheme, round):
 def command(levels, scheme):
     def run(folder, round):
         call = f"distance.command({touch(folder)!r}, {levels}, {scheme!r}, {str(folder / 'peer.npy')!r})"
-        code = f"import sys; sys.path.insert(0, {str(peers)!r}); import distance; {call}"
-        return whole(folder, levels, scheme, round), clocked(sys.executable, "-c", code)
+        return whole(folder, levels, scheme, round), clocked(*python("distance", call))
 
     return run
 

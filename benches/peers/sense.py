@@ -5,9 +5,8 @@ Run: pip install -r benches/peers/requirements.txt
      python benches/peers/sense.py
 """
 
-import time
-
 import numpy as np
+from distance import least
 
 PARTS, SENSORS, SAMPLES, DENSITY = 5, 168, 100_000, 1010.0
 
@@ -26,13 +25,7 @@ def seconds():
     rng = np.random.default_rng(1)
     velocities, spins = rng.normal(size=(2, SAMPLES, PARTS, 3))
     places, normals = rng.normal(size=(2, SENSORS, 3))
-
-    def measure():
-        start = time.perf_counter()
-        felt(velocities, spins, places, normals)
-        return time.perf_counter() - start
-
-    return min(measure() for _ in range(3))
+    return least(lambda: felt(velocities, spins, places, normals))
 
 
 if __name__ == "__main__":
