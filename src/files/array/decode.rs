@@ -2,7 +2,7 @@
 
 use std::io;
 
-use npyz::{DType, Deserialize, TypeChar, TypeRead};
+use npyz::{DType, Endianness, TypeChar};
 
 /// Adds the values that bytes hold.
 type AddValues = dyn Fn(&[u8], &mut Vec<f64>) -> io::Result<()> + Send + Sync;
@@ -20,42 +20,51 @@ impl Decode {
     /// Of values of a type; `None` if they are no numbers.
     pub(super) fn of(dtype: &DType) -> Option<Self> {
         let DType::Plain(kind) = dtype else { return None };
-        match (kind.type_char(), kind.num_bytes()?) {
-            (TypeChar::Float, 2) => of(dtype, half_number),
-            (TypeChar::Float, 4) => of(dtype, <f64 as From<f32>>::from),
-            (TypeChar::Float, 8) => of(dtype, |value: f64| value),
-            (TypeChar::Bool, 1) => of(dtype, |value: bool| f64::from(u8::from(value))),
-            (TypeChar::Int, 1) => of(dtype, <f64 as From<i8>>::from),
-            (TypeChar::Int, 2) => of(dtype, <f64 as From<i16>>::from),
-            (TypeChar::Int, 4) => of(dtype, <f64 as From<i32>>::from),
-            (TypeChar::Int, 8) => of(dtype, |value: i64| value as f64),
-            (TypeChar::Uint, 1) => of(dtype, <f64 as From<u8>>::from),
-            (TypeChar::Uint, 2) => of(dtype, <f64 as From<u16>>::from),
-            (TypeChar::Uint, 4) => of(dtype, <f64 as From<u32>>::from),
-            (TypeChar::Uint, 8) => of(dtype, |value: u64| value as f64),
-            _ => None,
-        }
+        let is_big = kind.endianness() == Endianness::Big;
+        let (width, is_float) = (kind.num_bytes()?, kind.type_char() == TypeChar::Float);
+        let add = match (kind.type_char(), width) {
+            (TypeChar::Float, 2) => adds(is_big, |bytes| half::f16::from_le_bytes(bytes).to_f64()),
+            (TypeChar::Float, 4) => adds(is_big, |bytes| f64::from(f32::from_le_bytes(bytes))),
+            (TypeChar::Float, 8) => adds(is_big, f64::from_le_bytes),
+            (TypeChar::Bool, 1) => Box::new(add_bools),
+            (TypeChar::Int, 1) => adds(is_big, |bytes| f64::from(i8::from_le_bytes(bytes))),
+            (TypeChar::Int, 2) => adds(is_big, |bytes| f64::from(i16::from_le_bytes(bytes))),
+            (TypeChar::Int, 4) => adds(is_big, |bytes| f64::from(i32::from_le_bytes(bytes))),
+            (TypeChar::Int, 8) => adds(is_big, |bytes| i64::from_le_bytes(bytes) as f64),
+            (TypeChar::Uint, 1) => adds(is_big, |bytes| f64::from(u8::from_le_bytes(bytes))),
+            (TypeChar::Uint, 2) => adds(is_big, |bytes| f64::from(u16::from_le_bytes(bytes))),
+            (TypeChar::Uint, 4) => adds(is_big, |bytes| f64::from(u32::from_le_bytes(bytes))),
+            (TypeChar::Uint, 8) => adds(is_big, |bytes| u64::from_le_bytes(bytes) as f64),
+            _ => return None,
+        };
+        Some(Self { width, add, is_single: width <= 2 || is_float && width == 4 })
     }
 }
 
-/// float16 as f64.
-fn half_number(value: half::f16) -> f64 {
-    value.to_f64()
+/// Decodes each `WIDTH` bytes by `number`, which takes the least significant byte first.
+fn adds<const WIDTH: usize>(
+    is_big: bool,
+    number: impl Fn([u8; WIDTH]) -> f64 + Send + Sync + 'static,
+) -> Box<AddValues> {
+    let reversed = |mut bytes: [u8; WIDTH]| {
+        bytes.reverse();
+        bytes
+    };
+    Box::new(move |bytes, values| {
+        let each = bytes.as_chunks().0.iter();
+        match is_big {
+            true => values.extend(each.map(|bytes| number(reversed(*bytes)))),
+            false => values.extend(each.map(|bytes| number(*bytes))),
+        }
+        Ok(())
+    })
 }
 
-fn of<S: Deserialize<TypeReader: Send + Sync + 'static> + 'static>(
-    dtype: &DType,
-    number: fn(S) -> f64,
-) -> Option<Decode> {
-    let (decoder, width) = (S::reader(dtype).ok()?, size_of::<S>());
-    let add = move |bytes: &[u8], values: &mut Vec<f64>| {
-        values.reserve(bytes.len() / width);
-        bytes.chunks_exact(width).try_for_each(|value| {
-            values.push(number(decoder.read_one(value)?));
-            Ok(())
-        })
-    };
-    let DType::Plain(kind) = dtype else { return None };
-    let is_single = width <= 2 || width == 4 && kind.type_char() == TypeChar::Float;
-    Some(Decode { width, add: Box::new(add), is_single })
+/// Adds bytes that must be 0 or 1.
+fn add_bools(bytes: &[u8], values: &mut Vec<f64>) -> io::Result<()> {
+    if let Some(byte) = bytes.iter().find(|byte| **byte > 1) {
+        return Err(io::Error::new(io::ErrorKind::InvalidData, format!("{byte} is no bool")));
+    }
+    values.extend(bytes.iter().map(|byte| f64::from(*byte)));
+    Ok(())
 }
