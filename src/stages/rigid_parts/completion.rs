@@ -12,6 +12,7 @@ use rayon::prelude::*;
 use super::roots::{Roots, product};
 use crate::numerics::eigen::largest;
 use crate::numerics::interrupt;
+use crate::numerics::simd::vectorised;
 
 /// Largest rank. More than the motions of a body have does no harm.
 const MAX_RANK: usize = 100;
@@ -112,15 +113,21 @@ impl Block {
     /// A root where it is felt, and else the extrapolated estimate, which is no more than the root; any, where this is missing.
     fn filled(&self, step: f32) -> Mat<f32> {
         let mut filled = Mat::zeros(self.roots.nrows(), self.roots.ncols());
-        for sensor in 0..self.roots.ncols() {
-            let estimates = self.estimate.col_as_slice(sensor).iter().zip(self.last.col_as_slice(sensor));
-            let roots = self.roots.col_as_slice(sensor).iter().zip(&self.thresholds);
-            let to = filled.col_as_slice_mut(sensor).iter_mut();
-            for ((to, (estimate, last)), (root, least)) in to.zip(estimates).zip(roots) {
-                let ahead = estimate + step * (estimate - last);
-                *to = if root >= least { *root } else { ahead.min(*root) };
-            }
-        }
+        vectorised(
+            #[inline(always)]
+            || {
+                for sensor in 0..self.roots.ncols() {
+                    let estimates =
+                        self.estimate.col_as_slice(sensor).iter().zip(self.last.col_as_slice(sensor));
+                    let roots = self.roots.col_as_slice(sensor).iter().zip(&self.thresholds);
+                    let to = filled.col_as_slice_mut(sensor).iter_mut();
+                    for ((to, (estimate, last)), (root, least)) in to.zip(estimates).zip(roots) {
+                        let ahead = estimate + step * (estimate - last);
+                        *to = if root >= least { *root } else { ahead.min(*root) };
+                    }
+                }
+            },
+        );
         filled
     }
 
