@@ -6,7 +6,7 @@ root=$(CDPATH= cd -- "$(dirname -- "$(readlink -f -- "${BASH_SOURCE[0]}")")/.." 
 
 "$root/reproduce/install.sh" || exit 2
 [ -x "${CARGO_TARGET_DIR:-$root/target}/release/bodyschema" ] ||
-    echo "bodyschema: building the program, once; 4 to 7 minutes on two cores" >&2
+    echo "bodyschema: building the program, once; 3 to 7 minutes on two cores" >&2
 quiet=(--quiet)
 [ -t 2 ] && quiet=()
 cargo build "${quiet[@]}" --release --locked --manifest-path "$root/Cargo.toml" || exit 2
