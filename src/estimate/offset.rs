@@ -4,6 +4,8 @@
 //! rest is the least value of a sensor, and one of the most frequent. With noise, values at rest scatter about it. If it is above 0 by more
 //! than the noise, nearly all values are.
 
+use rayon::prelude::*;
+
 use crate::stages::sense::Tactile;
 
 /// Share of the samples from which on the least value of a sensor is its reading at rest.
@@ -16,18 +18,18 @@ const ABOVE: f64 = 0.9;
 
 /// Whether sensors of a recording do not read 0 at rest. `signed`: whether negative values count; if not, they are 0.
 pub(super) fn has_offset(tactile: &Tactile, signed: bool) -> bool {
-    let (mut elsewhere, mut above, mut all) = (0, 0, 0);
-    for series in tactile.series() {
+    let own = |series: &[f32]| {
         let known = || {
             let known = series.iter().copied().filter(|pressure| !pressure.is_nan());
             known.map(|pressure| if signed { pressure } else { pressure.max(0.0) })
         };
         let least = known().fold(f32::INFINITY, f32::min);
         let (count, at_least) = (known().count(), known().filter(|pressure| *pressure == least).count());
-        elsewhere += usize::from(least != 0.0 && at_least as f64 >= AT_REST * count as f64);
-        above += known().filter(|pressure| *pressure > 0.0).count();
-        all += count;
-    }
+        let elsewhere = usize::from(least != 0.0 && at_least as f64 >= AT_REST * count as f64);
+        [elsewhere, known().filter(|pressure| *pressure > 0.0).count(), count]
+    };
+    let sums = tactile.pressures.par_chunks_exact(tactile.samples).map(own);
+    let [elsewhere, above, all] = sums.reduce(|| [0; 3], |a, b| [a[0] + b[0], a[1] + b[1], a[2] + b[2]]);
     elsewhere as f64 > MOST * tactile.sensors() as f64 || !signed && above as f64 > ABOVE * all as f64
 }
 

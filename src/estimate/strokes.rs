@@ -4,6 +4,8 @@
 //! something. What strokes a skin is felt where it is. Rectified motions of rank six explain a stroke as well as a movement: a bump that
 //! moves along a part is the positive part of a few changing functions of the place. So the residual does not tell.
 
+use rayon::prelude::*;
+
 use crate::stages::sense::Tactile;
 
 /// Share of a sensor's mean pressure, beyond which it feels something.
@@ -16,22 +18,30 @@ const FEW: f64 = 0.2;
 /// Whether few sensors feel something at a time, at the samples at which any does. Meant for sensors without noise, and those of which noise
 /// was set to 0. Missing values count neither way.
 pub(super) fn few_at_a_time(tactile: &Tactile) -> bool {
-    let mut is_felt = vec![false; tactile.samples];
-    let (mut known, mut felt) = (vec![0u32; tactile.samples], 0u64);
-    for series in tactile.series() {
-        let sizes = || series.iter().enumerate().filter(|(_, pressure)| !pressure.is_nan());
-        let sizes = || sizes().map(|(t, pressure)| (t, f64::from(pressure.abs())));
-        let mean = sizes().map(|(_, size)| size).sum::<f64>() / sizes().count().max(1) as f64;
-        for (t, size) in sizes() {
-            known[t] += 1;
-            if size > FELT * mean {
-                is_felt[t] = true;
-                felt += 1;
+    /// Samples that are looked at at once. It changes no result.
+    const BLOCK: usize = 1024;
+    let size = |pressure: &f32| Some(f64::from(pressure.abs())).filter(|size| !size.is_nan());
+    let limit = |series: &[f32]| {
+        let sizes = || series.iter().filter_map(size);
+        FELT * (sizes().sum::<f64>() / sizes().count().max(1) as f64)
+    };
+    let series: Vec<&[f32]> = tactile.series().collect();
+    let limits: Vec<f64> = series.par_iter().map(|series| limit(series)).collect();
+    let counted = |first: usize| {
+        let count = BLOCK.min(tactile.samples - first);
+        let (mut known, mut felt) = (vec![0u64; count], vec![0u64; count]);
+        for (series, limit) in series.iter().zip(&limits) {
+            for (t, pressure) in series[first..first + count].iter().enumerate() {
+                known[t] += u64::from(!pressure.is_nan());
+                felt[t] += u64::from(f64::from(pressure.abs()) > *limit);
             }
         }
-    }
-    let all: u64 =
-        known.iter().zip(&is_felt).filter(|(_, is_felt)| **is_felt).map(|(count, _)| u64::from(*count)).sum();
+        let all = known.iter().zip(&felt).filter(|(_, felt)| **felt > 0).map(|(known, _)| known);
+        [felt.iter().sum::<u64>(), all.sum()]
+    };
+    let firsts: Vec<usize> = (0..tactile.samples).step_by(BLOCK).collect();
+    let [felt, all] =
+        firsts.into_par_iter().map(counted).reduce(|| [0; 2], |a, b| [a[0] + b[0], a[1] + b[1]]);
     (felt as f64) < FEW * all as f64
 }
 

@@ -5,6 +5,7 @@
 
 use rayon::prelude::*;
 
+use crate::numerics::simd::vectorised;
 use crate::stages::sense::Tactile;
 
 /// Mean product of two sensors' signs from which on they are shared. That of independent noise is 0 but for chance: a standard
@@ -43,11 +44,16 @@ impl Signs {
     /// Whether the signs of another sensor are much the same, or the opposite.
     pub(super) fn are_shared_with(&self, other: &Self) -> bool {
         let (mut count, mut alike) = (0, 0);
-        for at in 0..self.some.len() {
-            let both = self.some[at] & other.some[at];
-            count += both.count_ones();
-            alike += (both & !(self.above[at] ^ other.above[at])).count_ones();
-        }
+        vectorised(
+            #[inline(always)]
+            || {
+                for at in 0..self.some.len() {
+                    let both = self.some[at] & other.some[at];
+                    count += both.count_ones();
+                    alike += (both & !(self.above[at] ^ other.above[at])).count_ones();
+                }
+            },
+        );
         let mean = 2.0 * f64::from(alike) / f64::from(count.max(1)) - 1.0;
         count >= MIN_DIFFERENCES && mean.abs() >= SHARED
     }

@@ -39,6 +39,7 @@ const LEVERAGE: f64 = 0.9;
 
 pub(super) mod evidence;
 mod minimum;
+mod shares;
 
 /// What some sensors of a body felt, and what completes it.
 pub(super) struct Felt {
@@ -57,6 +58,8 @@ pub(super) struct Felt {
     pub parameters: Parameters,
     /// Motions that were learned.
     pub memory: Memory<Learned>,
+    /// What motions left that were learned once more, and take the place of no motion that leaves less.
+    pub refits: Memory<f64>,
 }
 
 impl Felt {
@@ -280,23 +283,6 @@ impl Cluster {
         als.residuals(loadings.as_ref(), &self.motion).into_iter().map(per_root).collect()
     }
 
-    /// The residual of each of any sensors at the same samples: the share of its sum of squares that this motion leaves unexplained, 1 if
-    /// it feels nothing.
-    pub(super) fn shares(&self, roots: &Roots) -> Vec<f64> {
-        let als = Als::new(roots.values.as_ref(), &roots.thresholds);
-        let mut loadings = Mat::zeros(roots.sensors(), self.rank());
-        for _ in 0..LOADING_ITERATIONS[1] {
-            als.update_loadings(loadings.as_mut(), &self.motion);
-        }
-        let residuals = als.residuals(loadings.as_ref(), &self.motion);
-        let share = |(sensor, [residual, _]): (usize, [f64; 2])| {
-            let both = roots.values.col_as_slice(sensor).iter().zip(&roots.thresholds);
-            let all: f64 = both.filter(|(root, least)| root >= least).map(|(root, _)| root * root).sum();
-            if all > 0.0 { residual / all } else { 1.0 }
-        };
-        residuals.into_iter().enumerate().map(share).collect()
-    }
-
     /// Learns the motion in so many iterations from what it is, or remembers what that gave.
     fn learn(&mut self, felt: &Felt, iterations: usize, weight: f64) {
         let own = felt.roots.select_as_they_are(&self.representatives);
@@ -325,9 +311,20 @@ impl Cluster {
         }
     }
 
+    /// Alternates least squares, and finds what the motion leaves. Returns whether all iterations were made.
+    fn alternate(&mut self, felt: &Felt, own: &Roots, iterations: usize, weight: f64) -> bool {
+        let is_whole = self.iterate(felt, own, iterations, weight);
+        let plain = Als::new(own.values.as_ref(), &own.thresholds);
+        let [residual, freedom] = plain.residual(self.loadings.as_ref(), &self.motion);
+        let whitened = self.whitened_loadings();
+        (self.residual, self.freedom, self.components) = (residual, freedom, components(&whitened));
+        self.description_length = self.description_length(felt, own, &whitened);
+        is_whole
+    }
+
     /// Alternates least squares with momentum, which is lost when the residual grows. Returns whether all iterations were made, so that the
     /// last motion completes the roots.
-    fn alternate(&mut self, felt: &Felt, own: &Roots, iterations: usize, weight: f64) -> bool {
+    fn iterate(&mut self, felt: &Felt, own: &Roots, iterations: usize, weight: f64) -> bool {
         let (values, thresholds) = (own.values.as_ref(), &own.thresholds);
         let plain = Als::new(values, thresholds);
         let Self { loadings, motion, completed, .. } = self;
@@ -336,7 +333,6 @@ impl Cluster {
             .update_motion(loadings.as_ref(), motion);
         let mut last = loadings.clone();
         let (mut momentum, mut before) = (MOMENTUM[0], f64::INFINITY);
-        let mut is_whole = true;
         for iteration in 0..iterations {
             let als = Als::new(values, thresholds).with_completed(completed.as_ref(), weight);
             let mut next = loadings.clone();
@@ -344,8 +340,7 @@ impl Cluster {
             let [residual, freedom] = plain.residual(next.as_ref(), motion);
             if felt.tolerance < felt.parameters.min_tolerance && residual <= ROUNDING * freedom {
                 *loadings = next;
-                is_whole = false;
-                break;
+                return false;
             }
             let mut step = 0.0;
             if residual > before {
@@ -362,11 +357,7 @@ impl Cluster {
             als.update_motion(loadings.as_ref(), motion);
             plain.complete(loadings.as_ref(), motion, completed);
         }
-        let [residual, freedom] = plain.residual(loadings.as_ref(), motion);
-        let whitened = whitened(loadings, motion);
-        (self.residual, self.freedom, self.components) = (residual, freedom, components(&whitened));
-        self.description_length = self.description_length(felt, own, &whitened);
-        is_whole
+        true
     }
 
     /// In: the roots of the representatives, and their c for which each component of w has a variance of 1.

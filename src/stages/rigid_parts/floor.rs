@@ -10,6 +10,9 @@ use super::roots::size;
 use super::stratified::stratified;
 use super::subspace::felt_samples;
 
+/// Samples that are looked at at once. It changes no result.
+const BLOCK: usize = 1024;
+
 /// The root of the least size of each sensor that is other than 0; 0 if all are 0. `signed`: whether negative pressures are signal.
 pub(super) fn floors(series: &[&[f32]], signed: bool) -> Vec<f64> {
     let least = |series: &&[f32]| {
@@ -38,13 +41,22 @@ pub(super) fn telling_samples(series: &[&[f32]], signed: bool, floors: &[f64], m
     let means: Vec<f64> = series.par_iter().map(mean).collect();
     let scales: Vec<f64> = means.iter().map(|mean| mean.sqrt()).collect();
     let least = typical_floor(floors, &scales).powi(2);
-    let is_telling = |t: &usize| {
-        let missing = series.iter().filter(|series| series[*t].is_nan()).count();
-        let own = series.iter().zip(&means).filter(|(series, mean)| **mean > 0.0 && !series[*t].is_nan());
-        let total: f64 = own.map(|(series, mean)| f64::from(size(series[*t], signed)) / mean).sum();
-        total > least * (series.len() - missing) as f64
+    let telling_from = |first: usize| {
+        let count = BLOCK.min(samples - first);
+        let (mut known, mut totals) = (vec![0u32; count], vec![0.0; count]);
+        for (series, mean) in series.iter().zip(&means) {
+            for ((pressure, known), total) in series[first..].iter().zip(&mut known).zip(&mut totals) {
+                *known += u32::from(!pressure.is_nan());
+                if *mean > 0.0 && !pressure.is_nan() {
+                    *total += f64::from(size(*pressure, signed)) / mean;
+                }
+            }
+        }
+        let both = totals.into_iter().zip(known).enumerate();
+        both.filter(|(_, (total, known))| *total > least * f64::from(*known)).map(move |(t, _)| first + t)
     };
-    let telling: Vec<usize> = (0..samples).into_par_iter().filter(is_telling).collect();
+    let firsts: Vec<usize> = (0..samples).step_by(BLOCK).collect();
+    let telling: Vec<usize> = firsts.into_par_iter().flat_map_iter(telling_from).collect();
     // Sensors with few levels may feel nothing above their least.
     if telling.is_empty() {
         return felt_samples(series, signed, most);

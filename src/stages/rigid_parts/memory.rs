@@ -76,7 +76,7 @@ pub(super) fn key(numbers: &[f64], matrices: &[&Mat<f64>]) -> u64 {
     let mut hasher = FixedState::default().build_hasher();
     let mut write = |numbers: &[f64]| {
         hasher.write_usize(numbers.len());
-        numbers.iter().for_each(|number| hasher.write_u64(number.to_bits()));
+        hasher.write(pulp::bytemuck::cast_slice(numbers));
     };
     write(numbers);
     for matrix in matrices {

@@ -6,7 +6,8 @@
 
 use faer::Mat;
 
-use super::{Cluster, Felt, ITERATIONS, principal_motion};
+use super::{Cluster, Felt, ITERATIONS, key, principal_motion};
+use crate::stages::rigid_parts::roots::Roots;
 
 impl Cluster {
     /// Takes the motion that is learned by a component more, if it leaves less. With too few sensors for that, it stays.
@@ -15,20 +16,27 @@ impl Cluster {
         if self.representatives.len() <= rank + 1 {
             return;
         }
-        let mut other = self.clone();
-        other.completed = self.as_felt(felt);
-        for (rank, iterations) in [(rank + 1, ITERATIONS[1]), (rank, felt.iterations[1])] {
-            (other.loadings, other.motion) = principal_motion(&other.completed, rank);
-            other.learn(felt, iterations, felt.weights()[1]);
+        let own = felt.roots.select_as_they_are(&self.representatives);
+        let (as_felt, weight) = (self.as_felt(&own), felt.weights()[1]);
+        let iterations = felt.iterations[1];
+        let numbers = [felt.tolerance, weight, rank as f64, iterations as f64, self.sensors.len() as f64];
+        let key = key(&[&numbers, own.thresholds.as_slice()].concat(), &[&own.values, &as_felt]);
+        if felt.refits.get(key).is_some_and(|variance| *variance >= self.variance()) {
+            return;
         }
+        let mut other = Self { completed: as_felt, ..self.clone() };
+        (other.loadings, other.motion) = principal_motion(&other.completed, rank + 1);
+        other.iterate(felt, &own, ITERATIONS[1], weight);
+        (other.loadings, other.motion) = principal_motion(&other.completed, rank);
+        other.learn(felt, iterations, weight);
+        felt.refits.add(key, other.variance());
         if other.variance() < self.variance() {
             *self = other;
         }
     }
 
     /// The roots of the representatives where they are felt, and 0 elsewhere, samples × sensors. What is missing is completed as before.
-    fn as_felt(&self, felt: &Felt) -> Mat<f64> {
-        let own = felt.roots.select_as_they_are(&self.representatives);
+    fn as_felt(&self, own: &Roots) -> Mat<f64> {
         Mat::from_fn(own.samples(), own.sensors(), |t, sensor| match own.values[(t, sensor)] {
             root if root.is_nan() => self.completed[(t, sensor)],
             root if root < own.thresholds[t] => 0.0,
