@@ -73,7 +73,7 @@ def goals():
 def wrong_parts(rows):
     """How many wrong trees have too many parts, and how many too few."""
     wrong = [int(row["parts"]) - int(row["true_parts"]) for row in rows if row["tree_right"] == "false"]
-    return f"of {len(wrong)} wrong trees, {sum(more > 0 for more in wrong)} have too many parts, and {sum(more < 0 for more in wrong)} too few"
+    return f"of {len(wrong)} wrong trees, {sum(more > 0 for more in wrong)} have too many parts, {sum(more < 0 for more in wrong)} too few, and {sum(more == 0 for more in wrong)} the right number"
 
 
 def hardest(rows):
@@ -146,9 +146,10 @@ def of_recordings():
     held_out = of_use("held out", moved)
     counts, seed = [int(row["samples"]) for row in held_out], design("recordings")["seed"]
     failed = [one["name"] for one in recordings if "held_out_until" in one]
-    right = sum(row["tree_right"] == "true" for row in held_out)
     further = {one["name"] for one in recordings if one.get("further")}
-    more = f"; counting {len(failed)} examined since, {right} of {len(held_out) + len(failed)}" if failed else ""
+    both = held_out + [row for row in moved if row["recording"] in failed]
+    right = sum(row["tree_right"] == "true" for row in both)
+    more = f"; with {len(failed)} that failed and was taken out, {right} of {len(both)}" if failed else ""
     found = [
         f"Held-out [recorded movements](docs/own-data.md#recorded-movements), {min(counts)} to {max(counts):,} samples: trees right in",
         f"{trees_right(held_out)}{more}. Seed {seed}; `reproduce/recordings.py` of revision {revisions(held_out)}.",

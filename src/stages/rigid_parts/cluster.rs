@@ -58,8 +58,6 @@ pub(super) struct Felt {
     pub parameters: Parameters,
     /// Motions that were learned.
     pub memory: Memory<Learned>,
-    /// What motions left that were learned once more, and take the place of no motion that leaves less.
-    pub refits: Memory<f64>,
 }
 
 impl Felt {
@@ -234,7 +232,7 @@ impl Cluster {
 
     /// Residual variance of an informative root.
     pub(super) fn variance(&self) -> f64 {
-        self.residual / self.freedom.max(0.1)
+        variance(self.residual, self.freedom)
     }
 
     /// Replaces what completes the roots of these sensors by what this motion gives.
@@ -291,18 +289,35 @@ impl Cluster {
             &[&numbers, own.thresholds.as_slice()].concat(),
             &[&own.values, &self.completed, &self.loadings, &self.motion],
         );
-        if let Some(known) = felt.memory.get(key) {
-            let Learned { loadings, motion, components, residual, freedom, description_length } =
-                (*known).clone();
-            Als::new(own.values.as_ref(), &own.thresholds).complete(
-                loadings.as_ref(),
-                &motion,
-                &mut self.completed,
-            );
-            (self.loadings, self.motion, self.components) = (loadings, motion, components);
-            (self.residual, self.freedom) = (residual, freedom);
-            self.description_length = description_length;
-        } else if self.alternate(felt, &own, iterations, weight) {
+        match felt.memory.get(key) {
+            Some(known) => self.adopt(&known, &own),
+            None => self.alternate(felt, &own, iterations, weight, key),
+        }
+    }
+
+    /// Takes what was learned from roots that were completed as these are.
+    fn adopt(&mut self, known: &Learned, own: &Roots) {
+        let Learned { loadings, motion, components, residual, freedom, description_length } = known.clone();
+        Als::new(own.values.as_ref(), &own.thresholds).complete(
+            loadings.as_ref(),
+            &motion,
+            &mut self.completed,
+        );
+        (self.loadings, self.motion, self.components) = (loadings, motion, components);
+        (self.residual, self.freedom) = (residual, freedom);
+        self.description_length = description_length;
+    }
+
+    /// Alternates least squares, and finds what the motion leaves. Remembers it by a key if all iterations were made, since only then the last
+    /// motion completes the roots.
+    fn alternate(&mut self, felt: &Felt, own: &Roots, iterations: usize, weight: f64, key: u64) {
+        let is_whole = self.iterate(felt, own, iterations, weight);
+        let plain = Als::new(own.values.as_ref(), &own.thresholds);
+        let [residual, freedom] = plain.residual(self.loadings.as_ref(), &self.motion);
+        let whitened = self.whitened_loadings();
+        (self.residual, self.freedom, self.components) = (residual, freedom, components(&whitened));
+        self.description_length = self.description_length(felt, own, &whitened);
+        if is_whole {
             let (loadings, motion) = (self.loadings.clone(), self.motion.clone());
             let components = self.components.clone();
             let Self { residual, freedom, description_length, .. } = *self;
@@ -311,19 +326,7 @@ impl Cluster {
         }
     }
 
-    /// Alternates least squares, and finds what the motion leaves. Returns whether all iterations were made.
-    fn alternate(&mut self, felt: &Felt, own: &Roots, iterations: usize, weight: f64) -> bool {
-        let is_whole = self.iterate(felt, own, iterations, weight);
-        let plain = Als::new(own.values.as_ref(), &own.thresholds);
-        let [residual, freedom] = plain.residual(self.loadings.as_ref(), &self.motion);
-        let whitened = self.whitened_loadings();
-        (self.residual, self.freedom, self.components) = (residual, freedom, components(&whitened));
-        self.description_length = self.description_length(felt, own, &whitened);
-        is_whole
-    }
-
-    /// Alternates least squares with momentum, which is lost when the residual grows. Returns whether all iterations were made, so that the
-    /// last motion completes the roots.
+    /// Alternates least squares with momentum, which is lost when the residual grows. Returns whether all iterations were made.
     fn iterate(&mut self, felt: &Felt, own: &Roots, iterations: usize, weight: f64) -> bool {
         let (values, thresholds) = (own.values.as_ref(), &own.thresholds);
         let plain = Als::new(values, thresholds);
@@ -379,6 +382,11 @@ fn principal_motion(completed: &Mat<f64>, rank: usize) -> (Mat<f64>, Mat<f64>) {
     let loadings = principal_axes(completed, rank);
     let motion = product(completed.as_ref(), loadings.as_ref());
     (loadings, motion)
+}
+
+/// The residual variance of a sum of squares with so many degrees of freedom.
+fn variance(residual: f64, freedom: f64) -> f64 {
+    residual / freedom.max(0.1)
 }
 
 /// The residual variance of a sum of squares of so many roots; of one more, so that there is a variance of none.

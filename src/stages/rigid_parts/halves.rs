@@ -36,8 +36,8 @@ fn halves(felt: &Felt, sensors: &[usize]) -> [Felt; 2] {
         let of = |numbers: &[f64]| samples.iter().map(|&t| numbers[t]).collect();
         let roots =
             Roots { values: at(&own), thresholds: of(&felt.roots.thresholds), signed: felt.roots.signed };
-        let (memory, refits) = (felt.memory.clone(), felt.refits.clone());
-        Felt { roots, completed: at(&completed), sizes: of(&felt.sizes), memory, refits, ..*felt }
+        let memory = felt.memory.clone();
+        Felt { roots, completed: at(&completed), sizes: of(&felt.sizes), memory, ..*felt }
     })
 }
 

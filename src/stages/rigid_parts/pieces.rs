@@ -41,7 +41,6 @@ fn pieces_once(outer: &Felt, sensors: &[usize]) -> (Vec<Vec<usize>>, Vec<usize>)
         completed: completion.velocities,
         sizes: outer.sizes.clone(),
         memory: outer.memory.clone(),
-        refits: outer.refits.clone(),
         ..*outer
     };
     let limit = felt.explained();

@@ -72,7 +72,6 @@ impl<'a> Prepared<'a> {
             iterations: ITERATIONS,
             parameters: self.parameters,
             memory: Memory::default(),
-            refits: Memory::default(),
         };
         Search::new(felt, affinities)
     }

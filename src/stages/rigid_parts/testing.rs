@@ -27,17 +27,9 @@ pub(super) fn felt_of(velocities: &Mat<f64>) -> (Felt, Mat<f64>) {
     let parameters = Parameters::default();
     let completion = Completion::new(&roots, parameters.completion_ridge);
     let (completed, iterations) = (completion.velocities, ITERATIONS);
-    let (memory, refits) = (Memory::default(), Memory::default());
-    let felt = Felt {
-        roots,
-        completed,
-        sizes,
-        tolerance: parameters.min_tolerance,
-        iterations,
-        parameters,
-        memory,
-        refits,
-    };
+    let memory = Memory::default();
+    let felt =
+        Felt { roots, completed, sizes, tolerance: parameters.min_tolerance, iterations, parameters, memory };
     (felt, completion.affinities)
 }
 

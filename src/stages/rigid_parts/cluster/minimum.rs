@@ -6,30 +6,35 @@
 
 use faer::Mat;
 
-use super::{Cluster, Felt, ITERATIONS, key, principal_motion};
+use super::{Cluster, Felt, ITERATIONS, key, principal_motion, variance};
 use crate::stages::rigid_parts::roots::Roots;
 
 impl Cluster {
-    /// Takes the motion that is learned by a component more, if it leaves less. With too few sensors for that, it stays.
+    /// Takes the motion that is learned by a component more, or was learned so before, if it leaves less. With too few sensors for that, it
+    /// stays.
     pub(super) fn leave_minimum(&mut self, felt: &Felt) {
         let rank = self.rank();
         if self.representatives.len() <= rank + 1 {
             return;
         }
         let own = felt.roots.select_as_they_are(&self.representatives);
-        let (as_felt, weight) = (self.as_felt(&own), felt.weights()[1]);
-        let iterations = felt.iterations[1];
+        let (as_felt, iterations, weight) = (self.as_felt(&own), felt.iterations[1], felt.weights()[1]);
         let numbers = [felt.tolerance, weight, rank as f64, iterations as f64, self.sensors.len() as f64];
         let key = key(&[&numbers, own.thresholds.as_slice()].concat(), &[&own.values, &as_felt]);
-        if felt.refits.get(key).is_some_and(|variance| *variance >= self.variance()) {
+        let known = felt.memory.get(key);
+        if known.as_ref().is_some_and(|known| variance(known.residual, known.freedom) >= self.variance()) {
             return;
         }
         let mut other = Self { completed: as_felt, ..self.clone() };
-        (other.loadings, other.motion) = principal_motion(&other.completed, rank + 1);
-        other.iterate(felt, &own, ITERATIONS[1], weight);
-        (other.loadings, other.motion) = principal_motion(&other.completed, rank);
-        other.learn(felt, iterations, weight);
-        felt.refits.add(key, other.variance());
+        if let Some(known) = known {
+            other.adopt(&known, &own);
+        } else {
+            // Only what this completes is used of the first motion.
+            (other.loadings, other.motion) = principal_motion(&other.completed, rank + 1);
+            other.iterate(felt, &own, ITERATIONS[1], weight);
+            (other.loadings, other.motion) = principal_motion(&other.completed, rank);
+            other.alternate(felt, &own, iterations, weight, key);
+        }
         if other.variance() < self.variance() {
             *self = other;
         }

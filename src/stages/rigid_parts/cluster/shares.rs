@@ -24,7 +24,7 @@ impl Cluster {
     fn shares_of(&self, roots: MatRef<'_, f64>, thresholds: &[f64]) -> Vec<f64> {
         let als = Als::new(roots, thresholds);
         let mut loadings = Mat::zeros(roots.ncols(), self.rank());
-        // Each updates which samples are informative. Where these are the same, so are the loadings.
+        // An update depends on the loadings alone: where one changes nothing, none does.
         for _ in 0..LOADING_ITERATIONS[1] {
             let before = loadings.clone();
             als.update_loadings(loadings.as_mut(), &self.motion);
@@ -42,3 +42,6 @@ impl Cluster {
         residuals.into_iter().enumerate().map(share).collect()
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -31,7 +31,7 @@ fn a_rigid_part_leaves_nothing_wherever_its_motion_started() {
     let left = |number: usize| {
         let felt = felt(number);
         let mut own = Cluster::widest(&felt, (0..40).collect());
-        own.completed = own.as_felt(&felt);
+        own.completed = own.as_felt(&felt.roots.select_as_they_are(&own.representatives));
         (own.loadings, own.motion) = principal_motion(&own.completed, 6);
         own.learn(&felt, 300, felt.weights()[1]);
         let before = own.variance();
