@@ -106,9 +106,9 @@ impl Page<'_> {
         "\n## How often is it right?\n".to_owned(),
         "Parts are right if each estimated part is one true part by most of its sensors, and the other way round. A \
          tree is right if its parts are right and all its edges are. Four rival trees are over the same estimated \
-         parts: of the nearest sensors; of most mutual information of sensors, on average (Chow and Liu 1968); of most \
-         mutual information of the six leading principal components of the roots on each part, taken as Gaussian; and by neighbour \
-         joining (Saitou and Nei 1987) on −ln of the correlations of joint speeds. DPGMM-LJ and DPGMM + Prim: the posterior sample of highest log posterior \
+         parts. They are those of the nearest sensors, of the most mutual information of sensors, on average (Chow and Liu 1968), and of \
+         principal components, and that of neighbour joining (Saitou and Nei 1987). The components are the six leading ones of the \
+         roots on each part, taken as Gaussian. Neighbour joining takes −ln of the correlations of joint speeds. DPGMM-LJ and DPGMM + Prim: the posterior sample of highest log posterior \
          of all chains, on a body map of 14 dimensions; [estimate.md](../../estimate.md#accuracy) says why they \
          recover fewer trees here than in the experiments. In brackets: 95 % intervals (Wilson), as if all simulations \
          were alike. They differ by body, as the next table shows.\n"
