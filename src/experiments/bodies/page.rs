@@ -108,8 +108,8 @@ impl Page<'_> {
          tree is right if its parts are right and all its edges are. Four rival trees are over the same estimated \
          parts. They are those of the nearest sensors, of the most mutual information of sensors, on average (Chow and Liu 1968), and of \
          principal components, and that of neighbour joining (Saitou and Nei 1987). The components are the six leading ones of the \
-         roots on each part, taken as Gaussian. Neighbour joining takes −ln of the correlations of joint speeds. DPGMM-LJ and DPGMM + Prim: the posterior sample of highest log posterior \
-         of all chains, on a body map of 14 dimensions; [estimate.md](../../estimate.md#accuracy) says why they \
+         roots on each part, taken as Gaussian. Neighbour joining takes −ln of the correlations of joint speeds. DPGMM-LJ and \
+         DPGMM + Prim: the posterior sample of highest log posterior of all chains, on a body map of 14 dimensions; [estimate.md](../../estimate.md#accuracy) says why they \
          recover fewer trees here than in the experiments. In brackets: 95 % intervals (Wilson), as if all simulations \
          were alike. They differ by body, as the next table shows.\n"
             .to_owned(),

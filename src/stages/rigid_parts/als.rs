@@ -123,7 +123,8 @@ impl<'a> Als<'a> {
     }
 }
 
-fn by_sensor(values: MatRef<'_, f64>) -> Vec<&[f64]> {
+/// The series of each sensor, of samples × sensors.
+pub(super) fn by_sensor(values: MatRef<'_, f64>) -> Vec<&[f64]> {
     let column = |sensor| values.col(sensor).try_as_col_major().expect("roots are kept by sensor").as_slice();
     (0..values.ncols()).map(column).collect()
 }

@@ -4,7 +4,7 @@ use faer::{Mat, MatRef};
 use rayon::prelude::*;
 
 use super::{Cluster, LOADING_ITERATIONS};
-use crate::stages::rigid_parts::als::Als;
+use crate::stages::rigid_parts::als::{Als, by_sensor};
 use crate::stages::rigid_parts::regressions::LANES;
 use crate::stages::rigid_parts::roots::Roots;
 
@@ -33,13 +33,12 @@ impl Cluster {
             }
         }
         let residuals = als.residuals(loadings.as_ref(), &self.motion);
-        let share = |(sensor, [residual, _]): (usize, [f64; 2])| {
-            let own = roots.col(sensor).try_as_col_major().expect("roots are kept by sensor").as_slice();
+        let share = |(own, [residual, _]): (&[f64], [f64; 2])| {
             let felt = own.iter().zip(thresholds).filter(|(root, least)| root >= least);
             let all: f64 = felt.map(|(root, _)| root * root).sum();
             if all > 0.0 { residual / all } else { 1.0 }
         };
-        residuals.into_iter().enumerate().map(share).collect()
+        by_sensor(roots).into_iter().zip(residuals).map(share).collect()
     }
 }
 
