@@ -95,6 +95,6 @@ if __name__ == "__main__":
     for levels in (4, 8):
         print(f"NumPy one-hot product, N = {levels}: {numpy_seconds(levels):.2f} s", flush=True)
         print(
-            f"scikit-learn mutual_info_score, N = {levels}: {sklearn_seconds(levels):.0f} s " f"(extrapolated from {PAIRS} pairs)",
+            f"scikit-learn mutual_info_score, N = {levels}: {sklearn_seconds(levels):.0f} s (extrapolated from {PAIRS} pairs)",
             flush=True,
         )
